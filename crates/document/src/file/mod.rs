@@ -1,0 +1,36 @@
+//! `*.midair`: a zip with `document.ron` and the meshes it names.
+
+mod atomic;
+mod open;
+mod save;
+#[cfg(test)]
+mod tests;
+
+use std::io;
+
+use midair_mesh::MeshHash;
+
+pub use open::{OpenError, Opened, open};
+pub use save::{SaveError, save};
+
+const DOCUMENT: &str = "document.ron";
+
+fn mesh_entry(hash: MeshHash) -> String {
+    format!("meshes/{hash}.ply")
+}
+
+/// What the system said, as part of a sentence: without its number, in one line.
+pub(crate) fn reason(e: &io::Error) -> String {
+    let text = match e.kind() {
+        io::ErrorKind::StorageFull => "the disk is full".into(),
+        io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only".into(),
+        io::ErrorKind::PermissionDenied => "permission denied".into(),
+        io::ErrorKind::NotFound => "there is no such file or folder".into(),
+        _ => e.to_string(),
+    };
+    let text = match text.find(" (os error") {
+        Some(at) => &text[..at],
+        None => &text,
+    };
+    crate::check::one_line(text)
+}

@@ -1,0 +1,27 @@
+//! From a triangle mesh to a signed distance (EasyVRModeling §5.2).
+
+mod band;
+mod boundary;
+mod cache;
+mod frame;
+mod lids;
+mod options;
+mod progress;
+mod repair;
+mod sample;
+mod sign;
+mod store;
+mod tree;
+mod triangle;
+mod volume;
+mod wave;
+mod work;
+
+pub use cache::{BakeCache, Baked};
+pub use options::{BakeError, BakeOptions, LONGEST_SIDE, PADDING, STEP};
+pub use progress::Progress;
+pub use volume::Volume;
+pub use work::bake;
+
+#[cfg(test)]
+mod tests;

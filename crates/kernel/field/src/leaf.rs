@@ -1,0 +1,131 @@
+use std::sync::Arc;
+
+use glam::{Affine3A, IVec3, Vec3};
+use midair_mesh::Aabb;
+
+use crate::bake::Volume;
+use crate::shape::{NODES, Points, Shape};
+
+/// A primitive or baked mesh in its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    source: Source,
+    to_local: Affine3A,
+    /// The smallest singular value of the transform to the world.
+    scale: f32,
+    /// Half a diagonal of the cube [−1, 1]³ in local metres, the longest of the four.
+    diagonal: f32,
+    /// Half extents of that cube's local box.
+    extent: Vec3,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Source {
+    Shape(Arc<Shape>),
+    Volume(Arc<Volume>),
+}
+
+impl Leaf {
+    pub fn new(source: Source, to_world: Affine3A, scale: f32) -> Self {
+        let to_local = to_world.inverse();
+        let m = to_local.matrix3;
+        let diagonals = [
+            m.x_axis + m.y_axis + m.z_axis,
+            m.x_axis + m.y_axis - m.z_axis,
+            m.x_axis - m.y_axis + m.z_axis,
+            m.x_axis - m.y_axis - m.z_axis,
+        ];
+        Self {
+            source,
+            to_local,
+            scale,
+            diagonal: diagonals
+                .map(|d| d.length())
+                .into_iter()
+                .fold(0.0, f32::max)
+                * 1.000_001,
+            extent: Vec3::from(m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()),
+        }
+    }
+
+    /// φ at a point of the world.
+    pub fn at(&self, p: Vec3) -> f32 {
+        let p = self.to_local.transform_point3(p);
+        self.scale
+            * match &self.source {
+                Source::Shape(s) => s.at(p),
+                Source::Volume(v) => v.sample(p),
+            }
+    }
+
+    /// The greatest |∇φ| over a cube, where it is known; a baked mesh may be steep at its holes.
+    pub fn slope(&self, centre: Vec3, half: f32) -> Option<f32> {
+        match &self.source {
+            Source::Shape(_) => Some(1.0),
+            Source::Volume(v) => {
+                let c = self.to_local.transform_point3(centre);
+                v.steepest(&Aabb::around(c, self.extent * half))
+            }
+        }
+    }
+
+    /// Bounds of φ over the cube of half side `half` about `centre`, up to rounding.
+    pub fn range(&self, centre: Vec3, half: f32) -> (f32, f32) {
+        let c = self.to_local.transform_point3(centre);
+        match &self.source {
+            Source::Shape(s) => {
+                // |∇φ_local| ≤ 1.
+                let (v, r) = (s.at(c), half * self.diagonal);
+                (self.scale * (v - r), self.scale * (v + r))
+            }
+            Source::Volume(v) => {
+                let local = Aabb::around(c, self.extent * half);
+                let (lo, hi) = v.bound(&local, half * self.diagonal);
+                (self.scale * lo, self.scale * hi)
+            }
+        }
+    }
+
+    /// φ at the 8³ nodes `step·(first + (x, y, z))`, x fastest.
+    pub fn brick(&self, first: IVec3, step: f32, points: &mut Points, out: &mut [f32; NODES]) {
+        let m = self.to_local.matrix3;
+        let (ax, ay, az) = (
+            Vec3::from(m.x_axis),
+            Vec3::from(m.y_axis),
+            Vec3::from(m.z_axis),
+        );
+        let origin = Vec3::from(self.to_local.translation);
+        let row = |y: i32, z: i32| {
+            // From the node's own number, so that it has the same place whichever brick asks.
+            let (y, z) = ((first.y + y) as f32 * step, (first.z + z) as f32 * step);
+            ay * y + (az * z + origin)
+        };
+        match &self.source {
+            Source::Volume(v) => {
+                let start = ax * (first.x as f32 * step) + row(0, 0);
+                v.sample_brick(start, [ax * step, ay * step, az * step], out);
+            }
+            Source::Shape(shape) => {
+                let xs: [f32; 8] = std::array::from_fn(|i| (first.x + i as i32) as f32 * step);
+                for i in 0..64 {
+                    let r = row(i & 7, i >> 3);
+                    let at = i as usize * 8;
+                    for (k, x) in xs.iter().enumerate() {
+                        points.x[at + k] = ax.x * x + r.x;
+                        points.y[at + k] = ax.y * x + r.y;
+                        points.z[at + k] = ax.z * x + r.z;
+                    }
+                }
+                let centre = (first.as_vec3() + 3.5) * step;
+                points.centre = self.to_local.transform_point3(centre);
+                points.radius = 3.5 * step * self.diagonal;
+                shape.brick(points, out);
+            }
+        }
+        if self.scale != 1.0 {
+            for v in out {
+                *v *= self.scale;
+            }
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! Signed distance fields: exact primitives, meshes baked to grids, booleans on sparse bricks.
+//!
+//! A solid is a [`Recipe`]: an immutable tree of operands. Its field φ is negative inside, positive
+//! outside, in metres, and never claims more than the true distance (|∇φ| ≤ 1 up to sampling), so
+//! that whole bricks can be skipped (EasyVRModeling §5, with `papers/errata.md`).
+
+pub mod bake;
+mod dirty;
+mod fuse;
+mod grid;
+mod hash;
+mod leaf;
+mod placement;
+mod primitive;
+mod program;
+mod prune;
+mod recipe;
+mod scratch;
+mod shape;
+mod stretch;
+
+pub use dirty::{changed_box, refuse};
+pub use fuse::{FuseError, FuseOptions, fuse};
+pub use grid::{BRICK, Brick, BrickCoord, Grid};
+pub use hash::RecipeHash;
+pub use placement::Placement;
+pub use primitive::{MAX_CONTOUR_POINTS, MAX_HULL_POINTS, MAX_LENGTH, Primitive, PrimitiveError};
+pub use program::{CompileError, MAX_LEAVES, MeshSource, Program, local_step};
+pub use recipe::{MAX_DEPTH, MAX_OPERANDS, Node, Op, Operand, Recipe, RecipeError};
+
+#[cfg(test)]
+mod tests;

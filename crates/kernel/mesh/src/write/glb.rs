@@ -1,0 +1,166 @@
+use std::borrow::Cow;
+
+use bytemuck::cast_slice;
+use glam::Vec3;
+use gltf::binary::{Glb, Header};
+use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf::json::buffer::{Target, View};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::scene::{Node, Scene};
+use gltf::json::validation::Checked::Valid;
+use gltf::json::validation::USize64;
+use gltf::json::{Accessor, Asset, Buffer, Index, Mesh, Root};
+
+use super::{Part, WriteReason};
+
+/// A GLB with one node per mesh, with normals where a mesh has them.
+pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
+    let mut root = Root {
+        asset: Asset {
+            generator: Some("Midair".into()),
+            ..Asset::default()
+        },
+        ..Root::default()
+    };
+    let buffer = root.push(Buffer {
+        byte_length: USize64(0),
+        name: None,
+        uri: None,
+        extensions: None,
+        extras: Default::default(),
+    });
+    let mut data = Data {
+        root,
+        buffer,
+        bytes: Vec::new(),
+    };
+    let mut nodes = Vec::new();
+    for part in parts {
+        let position = data.vectors(&part.positions, true);
+        let mut attributes = [(Valid(Semantic::Positions), position)]
+            .into_iter()
+            .collect::<std::collections::BTreeMap<_, _>>();
+        if let Some(normals) = part.normals() {
+            attributes.insert(Valid(Semantic::Normals), data.vectors(normals, false));
+        }
+        let indices = data.add(
+            cast_slice(&part.mesh.triangles),
+            3 * part.mesh.triangles.len(),
+            Type::Scalar,
+            ComponentType::U32,
+            Target::ElementArrayBuffer,
+        );
+        let mesh = data.root.push(Mesh {
+            extensions: None,
+            extras: Default::default(),
+            name: Some(part.name.into()),
+            primitives: vec![Primitive {
+                attributes,
+                extensions: None,
+                extras: Default::default(),
+                indices: Some(indices),
+                material: None,
+                mode: Valid(Mode::Triangles),
+                targets: None,
+            }],
+            weights: None,
+        });
+        nodes.push(data.root.push(Node {
+            mesh: Some(mesh),
+            name: Some(part.name.into()),
+            ..Node::default()
+        }));
+    }
+    let scene = data.root.push(Scene {
+        extensions: None,
+        extras: Default::default(),
+        name: None,
+        nodes,
+    });
+    data.root.scene = Some(scene);
+    data.root.buffers[0].byte_length = data.bytes.len().into();
+    let failed = |error: String| WriteReason::Io(error);
+    let json = data
+        .root
+        .to_vec()
+        .map_err(|error| failed(error.to_string()))?;
+    Glb {
+        // The length is worked out on writing.
+        header: Header {
+            magic: *b"glTF",
+            version: 2,
+            length: 0,
+        },
+        json: Cow::Owned(json),
+        bin: Some(Cow::Owned(data.bytes)),
+    }
+    .to_vec()
+    .map_err(|error| failed(error.to_string()))
+}
+
+struct Data {
+    root: Root,
+    buffer: Index<Buffer>,
+    bytes: Vec<u8>,
+}
+
+impl Data {
+    /// Adds vectors; positions must state their box.
+    fn vectors(&mut self, vectors: &[Vec3], with_box: bool) -> Index<Accessor> {
+        let index = self.add(
+            cast_slice(vectors),
+            vectors.len(),
+            Type::Vec3,
+            ComponentType::F32,
+            Target::ArrayBuffer,
+        );
+        if with_box {
+            let fold = |of: fn(Vec3, Vec3) -> Vec3| {
+                vectors
+                    .iter()
+                    .copied()
+                    .reduce(of)
+                    .map(|v| v.to_array().to_vec().into())
+            };
+            let accessor = &mut self.root.accessors[index.value()];
+            accessor.min = fold(Vec3::min);
+            accessor.max = fold(Vec3::max);
+        }
+        index
+    }
+
+    fn add(
+        &mut self,
+        bytes: &[u8],
+        count: usize,
+        type_: Type,
+        component: ComponentType,
+        target: Target,
+    ) -> Index<Accessor> {
+        let view = self.root.push(View {
+            buffer: self.buffer,
+            byte_length: bytes.len().into(),
+            byte_offset: Some(self.bytes.len().into()),
+            byte_stride: None,
+            name: None,
+            target: Some(Valid(target)),
+            extensions: None,
+            extras: Default::default(),
+        });
+        self.bytes.extend_from_slice(bytes);
+        self.root.push(Accessor {
+            buffer_view: Some(view),
+            byte_offset: Some(USize64(0)),
+            count: count.into(),
+            component_type: Valid(GenericComponentType(component)),
+            extensions: None,
+            extras: Default::default(),
+            type_: Valid(type_),
+            min: None,
+            max: None,
+            name: None,
+            normalized: false,
+            sparse: None,
+        })
+    }
+}

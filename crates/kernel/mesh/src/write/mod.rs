@@ -1,0 +1,188 @@
+mod glb;
+mod obj;
+pub(crate) mod ply;
+mod save;
+mod stl;
+mod threemf;
+
+use std::path::Path;
+
+use glam::Vec3;
+use thiserror::Error;
+
+use crate::rescale::rescaled;
+use crate::{Format, TriMesh, Unit};
+
+/// Something with a name: in a file, the name of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<T> {
+    /// What a user calls it.
+    pub name: String,
+    /// The thing itself.
+    pub value: T,
+}
+
+impl<T> Named<T> {
+    /// `value` under `name`.
+    pub fn new(name: impl Into<String>, value: T) -> Self {
+        Self {
+            name: name.into(),
+            value,
+        }
+    }
+}
+
+/// How a file is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// The unit of length in the file; `None` is the format's own ([`Format::unit`]).
+    pub unit: Option<Unit>,
+}
+
+/// A file that could not be written: one line with its name, the reason and a way out.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file} {reason}")]
+pub struct WriteError {
+    /// The file's name without its folder.
+    pub file: String,
+    /// What stood in the way.
+    pub reason: WriteReason,
+}
+
+/// Why a file could not be written; follows the file's name in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum WriteReason {
+    /// The extension names no format that is written.
+    #[error("has no known extension. Name it {}.", Format::WRITABLE)]
+    UnknownFormat,
+    /// There is nothing to write.
+    #[error("was not written: there are no faces. Make or choose a solid first.")]
+    NoFaces,
+    /// A mesh is not sound: a corner that is no vertex or no number.
+    #[error(
+        "was not written: a face of {0:?} has a corner without a place. Undo the last step and try again."
+    )]
+    Unsound(String),
+    /// The lengths are beyond what the file can hold.
+    #[error("was not written: the model is too large for the unit {0}. Choose a larger unit.")]
+    TooLarge(Unit),
+    /// More than four thousand million bytes or vertices, which these formats cannot count.
+    #[error(
+        "was not written: the model has more triangles than the format can hold. Export at a coarser step."
+    )]
+    TooMany,
+    /// The folder is not there.
+    #[error("was not written: its folder is not there. Make it, or choose another.")]
+    NoFolder,
+    /// A folder has this name.
+    #[error("was not written: a folder has this name. Choose another name.")]
+    Folder,
+    /// The disk is full.
+    #[error("was not written: the disk is full. Free some space, or choose another disk.")]
+    DiskFull,
+    /// The disk or folder is read-only.
+    #[error("was not written: the folder is read-only. Choose another folder.")]
+    ReadOnly,
+    /// The system refused otherwise.
+    #[error("was not written: {0}. Check the disk and try again.")]
+    Io(String),
+}
+
+/// Writes meshes to `path` in the format of its extension.
+///
+/// The file is there whole or not at all: it is written under another name beside `path` and then
+/// takes its place. The same meshes give the same bytes. Vertices at different positions stay
+/// apart when lengths are scaled, so that a closed mesh stays closed. STL and PLY hold one mesh:
+/// several are put together there.
+///
+/// # Errors
+/// One line that names the file, says what stood in the way and what to do.
+pub fn write(
+    path: &Path,
+    meshes: &[Named<&TriMesh>],
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    Format::from_path(path)
+        .filter(|&format| format != Format::Gltf)
+        .ok_or(WriteReason::UnknownFormat)
+        .and_then(|format| encode(format, meshes, options))
+        .and_then(|bytes| save::save(path, &bytes))
+        .map_err(|reason| WriteError {
+            file: path
+                .file_name()
+                .unwrap_or(path.as_os_str())
+                .to_string_lossy()
+                .into_owned(),
+            reason,
+        })
+}
+
+/// The bytes of a file in `format`. [`Format::Gltf`] gives a GLB.
+pub fn encode(
+    format: Format,
+    meshes: &[Named<&TriMesh>],
+    options: &WriteOptions,
+) -> Result<Vec<u8>, WriteReason> {
+    let unit = options.unit.unwrap_or(format.unit());
+    let parts: Vec<Part> = meshes
+        .iter()
+        .filter(|mesh| !mesh.value.triangles.is_empty())
+        .map(|mesh| Part::new(mesh, unit))
+        .collect::<Result<_, _>>()?;
+    if parts.is_empty() {
+        return Err(WriteReason::NoFaces);
+    }
+    let corners: usize = parts
+        .iter()
+        .map(|part| 3 * part.mesh.triangles.len() + part.positions.len())
+        .sum();
+    // 12 bytes each at most, in formats that count bytes in 32 bits.
+    if corners > u32::MAX as usize / 12 {
+        return Err(WriteReason::TooMany);
+    }
+    match format {
+        Format::Glb | Format::Gltf => glb::encode(&parts),
+        Format::Obj => Ok(obj::encode(&parts)),
+        Format::Stl => stl::encode(&parts),
+        Format::Ply => Ok(ply::encode(
+            &parts
+                .iter()
+                .map(|part| (part.mesh, part.positions.as_slice()))
+                .collect::<Vec<_>>(),
+        )),
+        Format::ThreeMf => threemf::encode(&parts, unit),
+    }
+}
+
+/// A mesh ready to be written.
+struct Part<'a> {
+    name: &'a str,
+    mesh: &'a TriMesh,
+    /// Positions in the file's unit.
+    positions: Vec<Vec3>,
+}
+
+impl<'a> Part<'a> {
+    fn new(named: &'a Named<&'a TriMesh>, unit: Unit) -> Result<Self, WriteReason> {
+        let mesh = named.value;
+        let n = mesh.positions.len();
+        let sound = mesh.triangles.iter().flatten().all(|&v| (v as usize) < n)
+            && mesh.positions.iter().all(|p| p.is_finite());
+        if !sound {
+            return Err(WriteReason::Unsound(named.name.clone()));
+        }
+        let positions =
+            rescaled(&mesh.positions, unit.per_metre()).ok_or(WriteReason::TooLarge(unit))?;
+        Ok(Self {
+            name: &named.name,
+            mesh,
+            positions,
+        })
+    }
+
+    /// One normal per vertex, where the mesh has them.
+    fn normals(&self) -> Option<&[Vec3]> {
+        (self.mesh.normals.len() == self.positions.len()).then_some(&self.mesh.normals)
+    }
+}

@@ -1,0 +1,138 @@
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use midair_document::{Document, Kind, MeshStore, Object, ObjectId};
+use midair_field::{MeshSource, Placement};
+use midair_mesh::{Format, Named, TriMesh, Unit, WriteError, WriteOptions, write};
+
+use crate::{Solid, SolidError};
+
+/// What to write.
+#[derive(Clone, Debug, Default)]
+pub struct ExportOptions {
+    /// Metres between nodes; the document's own step where `None`.
+    pub step: Option<f32>,
+    /// The unit of the numbers in the file; the format's own where `None`.
+    pub unit: Option<Unit>,
+    /// Only this object; all visible ones where `None`.
+    pub only: Option<ObjectId>,
+}
+
+/// Why a mesh file was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// Nothing to see, or every solid came out empty.
+    #[error("{} was not written: no visible object has a surface. Show or add one, then export again.", file.display())]
+    Empty {
+        /// Where it was to go.
+        file: PathBuf,
+    },
+    /// The ending names no format, before any work is done.
+    #[error("{} was not written: its ending names no format. Use {}.", file.display(), Format::WRITABLE)]
+    Format {
+        /// Where it was to go.
+        file: PathBuf,
+    },
+    /// One object could not be evaluated.
+    #[error("{} was not written: {object} {reason}.", file.display())]
+    Solid {
+        /// Where it was to go.
+        file: PathBuf,
+        /// The object's name.
+        object: String,
+        /// Why.
+        reason: SolidError,
+    },
+    /// A mesh that stands in for an object is gone.
+    #[error("{} was not written: the mesh of {object} is missing. Delete the object, or open a whole copy of the document.", file.display())]
+    MeshGone {
+        /// Where it was to go.
+        file: PathBuf,
+        /// The object's name.
+        object: String,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Writes the visible objects of a document as a mesh file, each as one named mesh, evaluated where
+/// it stands in the world, so that `step` is the step on the printed part. Returns the triangles
+/// written.
+///
+/// # Errors
+///
+/// [`ExportError`]; the file is then as it was.
+pub fn export(
+    file: &Path,
+    document: &Document,
+    store: &MeshStore,
+    volumes: &dyn MeshSource,
+    options: &ExportOptions,
+    cancel: &AtomicBool,
+) -> Result<usize, ExportError> {
+    if Format::from_path(file).is_none_or(|f| f == Format::Gltf) {
+        return Err(ExportError::Format { file: file.into() });
+    }
+    let step = options.step.unwrap_or(document.step());
+    let mut meshes = Vec::new();
+    for (id, object) in document.objects() {
+        let wanted = match options.only {
+            Some(only) => id == only,
+            None => document.is_visible(id),
+        };
+        if wanted {
+            let mesh = object_mesh(file, object, store, volumes, step, cancel)?;
+            meshes.push(Named::new(object.name.clone(), mesh));
+        }
+    }
+    meshes.retain(|m| !m.value.triangles.is_empty());
+    if meshes.is_empty() {
+        return Err(ExportError::Empty { file: file.into() });
+    }
+    let borrowed: Vec<_> = meshes
+        .iter()
+        .map(|m| Named::new(m.name.clone(), &m.value))
+        .collect();
+    write(file, &borrowed, &WriteOptions { unit: options.unit })?;
+    Ok(meshes.iter().map(|m| m.value.triangles.len()).sum())
+}
+
+fn object_mesh(
+    file: &Path,
+    object: &Object,
+    store: &MeshStore,
+    volumes: &dyn MeshSource,
+    step: f32,
+    cancel: &AtomicBool,
+) -> Result<TriMesh, ExportError> {
+    match &object.kind {
+        Kind::Solid(recipe) => {
+            // Evaluated about the object's own origin and moved afterwards: far from the world's
+            // origin single precision would fray the triangles.
+            let about = Placement {
+                translation: glam::Vec3::ZERO,
+                ..object.placement
+            };
+            let solid = Solid::make(recipe, &about, step, volumes, cancel);
+            let mut mesh = solid
+                .map_err(|reason| ExportError::Solid {
+                    file: file.into(),
+                    object: object.name.clone(),
+                    reason,
+                })?
+                .mesh();
+            for p in &mut mesh.positions {
+                *p += object.placement.translation;
+            }
+            Ok(mesh)
+        }
+        Kind::Foreign { mesh, .. } => store
+            .get(*mesh)
+            .map(|m| m.transformed(&object.placement.affine()))
+            .ok_or_else(|| ExportError::MeshGone {
+                file: file.into(),
+                object: object.name.clone(),
+            }),
+    }
+}

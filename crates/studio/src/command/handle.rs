@@ -1,0 +1,170 @@
+//! Carries commands out.
+
+use bevy::prelude::*;
+use midair_document::{Edit, Object, ObjectId};
+use midair_field::Placement;
+
+use super::{Command, errand::Errand, errand::Errands};
+use crate::StudioSet;
+use crate::hands::{Action, Hands, Side};
+use crate::notice::Notices;
+use crate::project::{Places, Project, Selection, Shelf};
+use crate::show::Drafts;
+use crate::tools::Tools;
+
+pub(super) fn plugin(app: &mut App) {
+    // Buttons become commands before commands are carried out, in the same frame.
+    app.add_systems(
+        Update,
+        (buttons, handle).chain().in_set(StudioSet::Ask),
+    );
+}
+
+/// The buttons that mean the same in every mode. The menu is the right hand's.
+fn buttons(hands: Res<Hands>, mut commands: MessageWriter<Command>) {
+    if hands.pressed(Action::Undo).is_some() {
+        commands.write(Command::Undo);
+    }
+    if hands.pressed(Action::Redo).is_some() {
+        commands.write(Command::Redo);
+    }
+    if hands.get(Side::Right).pressed(Action::Library) {
+        commands.write(Command::ToggleLibrary);
+    }
+}
+
+fn handle(
+    mut commands: MessageReader<Command>,
+    hands: Res<Hands>,
+    mut project: ResMut<Project>,
+    mut shelf: ResMut<Shelf>,
+    mut tools: ResMut<Tools>,
+    mut drafts: ResMut<Drafts>,
+    mut selection: ResMut<Selection>,
+    mut errands: ResMut<Errands>,
+    places: Res<Places>,
+    mut notices: ResMut<Notices>,
+) {
+    for command in commands.read() {
+        match command {
+            Command::Undo => {
+                drafts.clear();
+                match project.undo() {
+                    Some(name) => notices.info(format!("Undone: {name}")),
+                    None => notices.info("Nothing to undo."),
+                }
+            }
+            Command::Redo => {
+                drafts.clear();
+                match project.redo() {
+                    Some(name) => notices.info(format!("Redone: {name}")),
+                    None => notices.info("Nothing to redo."),
+                }
+            }
+            Command::ToggleLibrary => shelf.open = !shelf.open,
+            Command::Place { component, side } => {
+                place(component, *side, &shelf, &hands, &mut project, &mut notices);
+            }
+            Command::Mode(id) => {
+                if !tools.activate(id.as_str()) {
+                    notices.warn(format!(
+                        "No mode \"{id}\" is plugged in. Add its plugin and start Midair again."
+                    ));
+                }
+            }
+            Command::Step(step) => {
+                project.commit("Set step", [Edit::SetStep { step: *step }], &mut notices);
+            }
+            Command::Edit(edit) => {
+                project.commit(edit.describe().to_owned(), [edit.clone()], &mut notices);
+            }
+            Command::Save => {
+                let path = project.path().map_or_else(|| project.new_path(), Into::into);
+                errands.start(Errand::Save(path), &project, &places);
+            }
+            Command::SaveAs(path) => {
+                errands.start(Errand::Save(path.clone()), &project, &places);
+            }
+            Command::Export { path, step, unit } => errands.start(
+                Errand::Export {
+                    path: path.clone(),
+                    step: *step,
+                    unit: *unit,
+                    only: None,
+                },
+                &project,
+                &places,
+            ),
+            Command::ExportObject { object, path } => errands.start(
+                Errand::Export {
+                    path: path.clone(),
+                    step: None,
+                    unit: None,
+                    only: Some(*object),
+                },
+                &project,
+                &places,
+            ),
+            Command::Import(paths) => {
+                for path in paths {
+                    errands.start(Errand::Import(path.clone()), &project, &places);
+                }
+            }
+            Command::Open(path) => {
+                errands.start(Errand::Open(path.clone()), &project, &places);
+            }
+            Command::CancelErrands => errands.cancel(),
+            Command::New => errands.start(Errand::New, &project, &places),
+            Command::Restore => errands.start(Errand::Restore, &project, &places),
+            Command::Dismiss => errands.start(Errand::Dismiss, &project, &places),
+            // The tool itself reads it.
+            Command::Tool { .. } => {}
+        }
+    }
+    for warning in project.bypass_change_detection().take_warnings() {
+        notices.warn(warning);
+    }
+    let document = project.document();
+    if selection.0.iter().any(|&id| document.object(id).is_none()) {
+        selection.0.retain(|&id| document.object(id).is_some());
+    }
+}
+
+/// The wand has picked a component: it appears at the hand.
+fn place(
+    component: &str,
+    side: Side,
+    shelf: &Shelf,
+    hands: &Hands,
+    project: &mut Project,
+    notices: &mut Notices,
+) {
+    if !shelf.open {
+        notices.warn("The library is closed: open it first, then pick a component.");
+        return;
+    }
+    let Some(found) = shelf.library.get(component) else {
+        notices.warn(format!(
+            "The library has no component \"{component}\". \"midair library\" lists what there is."
+        ));
+        return;
+    };
+    if found.missing {
+        notices.warn(format!(
+            "The mesh of {} is gone from the library. Import it again.",
+            found.name
+        ));
+        return;
+    }
+    let at = Placement::at(hands.get(side).pose.position);
+    let object = Object::solid(found.name.clone(), found.placed()).placed(at);
+    let id = ObjectId(project.document().next_id());
+    project.commit(
+        format!("Place {}", found.name),
+        [Edit::Add {
+            id,
+            object: object.into(),
+        }],
+        notices,
+    );
+}

@@ -1,0 +1,97 @@
+//! What panels, shortcuts and sessions ask for, by name.
+//!
+//! A panel is a function of what it shows to the commands it asks for; a session records the
+//! commands and not where the pointer was. They are carried out in [`StudioSet::Ask`]; reading and
+//! writing files goes on off the frame ([`Errands`]).
+
+mod errand;
+mod handle;
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use midair_document::{Edit, ObjectId};
+use midair_mesh::Unit;
+use serde::{Deserialize, Serialize};
+
+pub use errand::Errands;
+
+use crate::{hands::Side, tools::ToolId};
+
+/// One thing asked for.
+#[derive(Message, Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Command {
+    /// One step back.
+    Undo,
+    /// One step forward again.
+    Redo,
+    /// Shows or hides the library.
+    ToggleLibrary,
+    /// The wand picks a component from the open library: it appears at that hand.
+    Place {
+        /// Its id in the library.
+        component: String,
+        /// At which hand.
+        side: Side,
+    },
+    /// Takes another tool in hand.
+    Mode(ToolId),
+    /// Sets the document's S_global, in metres.
+    Step(f32),
+    /// An empty document.
+    New,
+    /// Opens a document.
+    Open(PathBuf),
+    /// Saves under the name it has, or in the work folder.
+    Save,
+    /// Saves under a name.
+    SaveAs(PathBuf),
+    /// Writes the visible solids as a mesh file.
+    Export {
+        /// Where; the ending says the format.
+        path: PathBuf,
+        /// Grid step in metres; the document's own where `None`.
+        #[serde(default)]
+        step: Option<f32>,
+        /// The file's unit; the format's own where `None`.
+        #[serde(default)]
+        unit: Option<Unit>,
+    },
+    /// Writes one object as a mesh file.
+    ExportObject {
+        /// Which.
+        object: ObjectId,
+        /// Where; the ending says the format.
+        path: PathBuf,
+    },
+    /// Brings meshes into the user's library.
+    Import(Vec<PathBuf>),
+    /// Gives up the files that are being read or written.
+    CancelErrands,
+    /// Takes up the work that an earlier run left behind.
+    Restore,
+    /// Leaves that work aside for good.
+    Dismiss,
+    /// Something only one tool understands: its options, its panel's buttons.
+    Tool {
+        /// Which tool.
+        tool: ToolId,
+        /// What, in the tool's own words.
+        ask: String,
+    },
+    /// An edit of the document by name, to set a scene up. Not a gesture: `--hands-only` refuses it.
+    Edit(Edit),
+}
+
+impl Command {
+    /// Whether a person's hands could have asked for it (a panel or a button does).
+    pub fn by_hand(&self) -> bool {
+        !matches!(self, Self::Edit(_))
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_message::<Command>();
+    handle::plugin(app);
+    errand::plugin(app);
+}

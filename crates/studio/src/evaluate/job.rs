@@ -1,0 +1,135 @@
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
+
+use bevy::prelude::*;
+use bevy_rapier3d::rapier::prelude::{SharedShape, TriMesh as Trimesh, TriMeshFlags};
+use midair_field::Recipe;
+use midair_field::bake::Progress;
+use midair_library::Volumes;
+use midair_mesh::TriMesh;
+use midair_field::Placement;
+use midair_solid::{Solid, SolidError};
+
+use super::{Key, Update};
+use crate::show::to_bevy_mesh;
+
+/// A solid, made.
+pub struct Made {
+    /// The whole surface, closed and welded, in the recipe's own frame.
+    pub mesh: Arc<TriMesh>,
+    /// The same, ready to be drawn; taken by the first that draws it.
+    pub(crate) drawn: std::sync::Mutex<Option<Mesh>>,
+    /// The same, ready to be picked; `None` where the solid is empty.
+    pub shape: Option<SharedShape>,
+    /// Milliseconds to fuse and to extract.
+    pub fuse_ms: f64,
+    /// Milliseconds to extract.
+    pub extract_ms: f64,
+    /// Enclosed volume in cubic metres.
+    pub volume: f64,
+    /// What was noticed on the way, a line each.
+    pub warnings: Vec<String>,
+    /// Bytes held, about.
+    pub bytes: usize,
+}
+
+impl Made {
+    /// As the report counts it.
+    pub fn update(&self) -> Update {
+        Update {
+            fuse_ms: self.fuse_ms,
+            extract_ms: self.extract_ms,
+            triangles: self.mesh.triangles.len(),
+        }
+    }
+
+    /// From a mesh that needs no evaluation.
+    pub fn from_mesh(mesh: Arc<TriMesh>) -> Self {
+        let shape = shape(&mesh);
+        let drawn = to_bevy_mesh(&mesh);
+        // Positions, normals and indices, held as a mesh, a drawing and a collider with its tree.
+        let bytes = mesh.positions.len() * 24 * 3 + mesh.triangles.len() * (12 * 3 + 64);
+        Self {
+            volume: mesh.volume(),
+            drawn: std::sync::Mutex::new(Some(drawn)),
+            shape,
+            fuse_ms: 0.0,
+            extract_ms: 0.0,
+            warnings: Vec::new(),
+            bytes,
+            mesh,
+        }
+    }
+}
+
+type Outcome = Result<Arc<Made>, String>;
+
+/// One evaluation on its way.
+pub(super) struct Running {
+    pub key: Key,
+    /// The last frame in which somebody asked for it.
+    pub wanted: u64,
+    pub progress: Progress,
+    pub cancelled: Arc<AtomicBool>,
+    outcome: Arc<OnceLock<Option<Outcome>>>,
+}
+
+impl Running {
+    pub fn new(key: Key, frame: u64) -> Self {
+        Self {
+            key,
+            wanted: frame,
+            progress: Progress::new(),
+            cancelled: Arc::default(),
+            outcome: Arc::default(),
+        }
+    }
+
+    pub fn is_finished(&self) -> bool {
+        self.outcome.get().is_some()
+    }
+
+    /// The outcome; `None` where it was cancelled.
+    pub fn take(self) -> Option<Outcome> {
+        self.outcome.get()?.clone()
+    }
+
+    /// What another thread is to do.
+    pub fn work(&self, recipe: Recipe, volumes: Arc<Volumes>) -> impl FnOnce() + Send + 'static {
+        let (step, cancelled, outcome) =
+            (self.key.step(), self.cancelled.clone(), self.outcome.clone());
+        move || {
+            let made = match Solid::make(
+                &recipe,
+                &Placement::IDENTITY,
+                step,
+                &*volumes,
+                &cancelled,
+            ) {
+                Ok(solid) => {
+                    let mut made = Made::from_mesh(Arc::new(solid.mesh()));
+                    made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
+                    made.extract_ms = solid.extract.as_secs_f64() * 1e3;
+                    Some(Ok(Arc::new(made)))
+                }
+                Err(SolidError::Cancelled) => None,
+                Err(error) => Some(Err(error.to_string())),
+            };
+            // Set once, here only.
+            let _ = outcome.set(made);
+        }
+    }
+}
+
+fn shape(mesh: &TriMesh) -> Option<SharedShape> {
+    if mesh.triangles.is_empty() {
+        return None;
+    }
+    // Oriented, so that a hand inside the solid touches it.
+    let trimesh = Trimesh::with_flags(
+        mesh.positions.clone(),
+        mesh.triangles.clone(),
+        TriMeshFlags::ORIENTED,
+    );
+    trimesh.ok().map(SharedShape::new)
+}

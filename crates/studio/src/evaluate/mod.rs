@@ -1,0 +1,242 @@
+//! Solids made from recipes, off the frame.
+//!
+//! Whoever shows a solid asks for it every frame with [`Evaluations::want`]; what nobody asks for
+//! any more is cancelled. Results are keyed by (recipe hash, step) and taken in at one point of the
+//! frame, the start of [`StudioSet::Rebuild`], before new work is started.
+
+mod delivery;
+mod job;
+mod memory;
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use bevy::platform::collections::HashMap;
+use bevy::prelude::*;
+use bevy::tasks::AsyncComputeTaskPool;
+use midair_field::{Recipe, RecipeHash};
+use midair_library::Volumes;
+
+pub use delivery::{Deliver, Delivered, Delivery, Job};
+pub use job::Made;
+use job::Running;
+use memory::Memory;
+
+use crate::{StudioSet, notice::Notices};
+
+/// Which solid: a recipe at a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// The recipe's name.
+    pub recipe: RecipeHash,
+    step: u32,
+}
+
+impl Key {
+    /// `recipe` with nodes every `step` metres of its own frame.
+    pub fn new(recipe: &Recipe, step: f32) -> Self {
+        Self {
+            recipe: recipe.hash(),
+            step: step.to_bits(),
+        }
+    }
+
+    /// Metres between nodes.
+    pub fn step(&self) -> f32 {
+        f32::from_bits(self.step)
+    }
+
+    /// Its name as a piece of work, the same in every run.
+    pub fn job(&self) -> Job {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(&self.recipe.0[..8]);
+        Job(u64::from_le_bytes(bytes) ^ u64::from(self.step).rotate_left(32))
+    }
+}
+
+/// One update of a boolean sequence, for the report (EasyVRModeling Table 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Update {
+    /// Milliseconds to fuse the operands' fields.
+    pub fuse_ms: f64,
+    /// Milliseconds to extract the surface.
+    pub extract_ms: f64,
+    /// Triangles extracted.
+    pub triangles: usize,
+}
+
+/// What has been made, what is being made, and what could not be.
+#[derive(Resource)]
+pub struct Evaluations {
+    /// Baked grids of imported meshes, shared by all evaluations.
+    pub volumes: Arc<Volumes>,
+    made: Memory,
+    running: Vec<Running>,
+    failed: HashMap<Key, String>,
+    counted: Vec<Key>,
+    updates: Vec<Update>,
+    frame: u64,
+}
+
+impl Evaluations {
+    /// With nothing made yet.
+    pub fn new(volumes: Arc<Volumes>) -> Self {
+        Self {
+            volumes,
+            made: Memory::default(),
+            running: Vec::new(),
+            failed: HashMap::default(),
+            counted: Vec::new(),
+            updates: Vec::new(),
+            frame: 0,
+        }
+    }
+
+    /// The solid, if it is there; otherwise it is being made from now on. To be asked again every
+    /// frame for as long as it is wanted.
+    pub fn want(&mut self, recipe: &Recipe, step: f32) -> Option<Arc<Made>> {
+        let key = Key::new(recipe, step);
+        if let Some(made) = self.made.get(&key) {
+            return Some(made);
+        }
+        if self.failed.contains_key(&key) {
+            return None;
+        }
+        match self.running.iter_mut().find(|r| r.key == key) {
+            Some(running) => running.wanted = self.frame,
+            None => self.start(recipe.clone(), key),
+        }
+        None
+    }
+
+    /// The solid, if it is there; never starts work.
+    pub fn peek(&mut self, key: &Key) -> Option<Arc<Made>> {
+        self.made.get(key)
+    }
+
+    /// Why it cannot be made, if it was tried.
+    pub fn failure(&self, key: &Key) -> Option<&str> {
+        self.failed.get(key).map(String::as_str)
+    }
+
+    /// Asked for and not finished.
+    pub fn outstanding(&self) -> usize {
+        self.running.iter().filter(|r| !r.is_finished()).count()
+    }
+
+    /// Finished, and not taken in yet.
+    pub fn is_finished(&self, job: Job) -> bool {
+        self.running
+            .iter()
+            .any(|r| r.key.job() == job && r.is_finished())
+    }
+
+    /// Finished or not: what is on its way, the oldest first, with its progress from 0 to 1.
+    pub fn progress(&self) -> impl Iterator<Item = (Key, f32)> + '_ {
+        self.running.iter().map(|r| (r.key, r.progress.fraction()))
+    }
+
+    /// Counts the making of this solid as one update of a boolean sequence.
+    pub fn count_update(&mut self, key: Key) {
+        match self.made.get(&key) {
+            Some(made) => self.updates.push(made.update()),
+            None => self.counted.push(key),
+        }
+    }
+
+    /// The updates so far.
+    pub fn updates(&self) -> &[Update] {
+        &self.updates
+    }
+
+    /// Bytes held by what has been made.
+    pub fn bytes(&self) -> usize {
+        self.made.bytes()
+    }
+
+    fn start(&mut self, recipe: Recipe, key: Key) {
+        let running = Running::new(key, self.frame);
+        let work = running.work(recipe, self.volumes.clone());
+        AsyncComputeTaskPool::get().spawn(async move { work() }).detach();
+        self.running.push(running);
+    }
+
+    /// Takes in what the delivery allows, in the order in which it was asked for.
+    fn take_in(&mut self, delivery: &Delivery, delivered: &mut Vec<Job>, notices: &mut Notices) {
+        let due: Vec<Key> = match delivery {
+            Delivery::AsTheyCome | Delivery::All => self
+                .running
+                .iter()
+                .filter(|r| r.is_finished())
+                .map(|r| r.key)
+                .collect(),
+            Delivery::Exactly(jobs) => jobs
+                .iter()
+                .filter_map(|&j| {
+                    self.running
+                        .iter()
+                        .find(|r| r.key.job() == j && r.is_finished())
+                        .map(|r| r.key)
+                })
+                .collect(),
+        };
+        for key in due {
+            let Some(at) = self.running.iter().position(|r| r.key == key) else {
+                continue;
+            };
+            let running = self.running.remove(at);
+            match running.take() {
+                Some(Ok(made)) => {
+                    delivered.push(key.job());
+                    if let Some(at) = self.counted.iter().position(|k| *k == key) {
+                        self.counted.remove(at);
+                        self.updates.push(made.update());
+                    }
+                    for warning in &made.warnings {
+                        notices.warn(warning.clone());
+                    }
+                    self.made.insert(key, made);
+                }
+                Some(Err(reason)) => {
+                    delivered.push(key.job());
+                    notices.warn(reason.clone());
+                    self.failed.insert(key, reason);
+                }
+                None => {}
+            }
+        }
+    }
+
+    /// Gives up what nobody asked for in the frame before.
+    fn drop_stale(&mut self) {
+        let frame = self.frame;
+        self.running.retain(|r| {
+            let wanted = r.wanted + 1 >= frame;
+            if !wanted {
+                r.progress.cancel();
+                r.cancelled.store(true, Ordering::Relaxed);
+            }
+            wanted
+        });
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Delivery>()
+        .init_resource::<Delivered>()
+        // Results are taken in before the entities follow and ask for new ones.
+        .configure_sets(Update, Deliver.in_set(StudioSet::Rebuild))
+        .add_systems(Update, deliver.in_set(Deliver));
+}
+
+fn deliver(
+    mut evaluations: ResMut<Evaluations>,
+    delivery: Res<Delivery>,
+    mut delivered: ResMut<Delivered>,
+    mut notices: ResMut<Notices>,
+) {
+    delivered.0.clear();
+    evaluations.frame += 1;
+    evaluations.take_in(&delivery, &mut delivered.0, &mut notices);
+    evaluations.drop_stale();
+}

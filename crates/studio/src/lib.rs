@@ -1,0 +1,74 @@
+//! The Bevy heart every mode stands on: hands, tools, the project, what is shown and picked.
+//!
+//! One frame runs [`StudioSet`] in order. Ways in write hands and commands in
+//! [`StudioSet::Gather`]; the active tool reads them and applies edits in [`StudioSet::Act`];
+//! the entities follow the document in [`StudioSet::Rebuild`].
+
+pub mod command;
+pub mod evaluate;
+pub mod hands;
+pub mod notice;
+pub mod panel;
+pub mod pick;
+pub mod project;
+pub mod show;
+pub mod tools;
+
+use bevy::prelude::*;
+
+pub use midair_document as document;
+
+/// The parts of a frame, in order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StudioSet {
+    /// Ways in write what the hands do and what panels asked for.
+    Gather,
+    /// What was asked for is carried out: files, undo, modes.
+    Ask,
+    /// What each hand touches is found.
+    Pick,
+    /// The active tool moves from phase to phase.
+    Act,
+    /// Finished gestures become edits of the document.
+    Commit,
+    /// Entities follow the document; solids are evaluated off the frame.
+    Rebuild,
+    /// Colours, hints and pulses follow the phase.
+    Cue,
+}
+
+/// Everything above, without a window and without any way in.
+pub struct StudioPlugin;
+
+impl Plugin for StudioPlugin {
+    fn build(&self, app: &mut App) {
+        app.configure_sets(
+            Update,
+            (
+                StudioSet::Gather,
+                StudioSet::Ask,
+                StudioSet::Pick,
+                StudioSet::Act,
+                StudioSet::Commit,
+                StudioSet::Rebuild,
+                StudioSet::Cue,
+            )
+                .chain(),
+        )
+        .add_plugins((
+            hands::plugin,
+            tools::plugin,
+            notice::plugin,
+            command::plugin,
+            project::plugin,
+            evaluate::plugin,
+            pick::plugin,
+            show::plugin,
+        ));
+    }
+
+    fn finish(&self, app: &mut App) {
+        // Once, before the first frame: the project is there when anything asks for it.
+        project::begin(app.world_mut());
+    }
+}

@@ -1,0 +1,192 @@
+use std::path::PathBuf;
+
+use bevy_egui::egui::{self, Ui};
+use midair_document::Document;
+
+use crate::command::{Command, Errands};
+use crate::project::{Project, Recoverables, Shelf};
+use crate::tools::Tools;
+
+/// What the bar remembers between frames: the fields that are being typed into.
+#[derive(Clone, Debug, Default)]
+pub struct Bar {
+    path: String,
+    asking: Asking,
+    /// The step while its slider is dragged; one command is sent when it is let go.
+    step: Option<f32>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Asking {
+    #[default]
+    Nothing,
+    Open,
+    SaveAs,
+    Export,
+    Import,
+}
+
+/// Modes, files, undo, the step of the grid.
+pub fn bar(
+    ui: &mut Ui,
+    state: &mut Bar,
+    project: &Project,
+    tools: &Tools,
+    shelf: &Shelf,
+    left_behind: &Recoverables,
+    errands: &Errands,
+) -> Vec<Command> {
+    let mut asks = Vec::new();
+    ui.horizontal_wrapped(|ui| {
+        ui.menu_button("File", |ui| files(ui, state, project, &mut asks));
+        let history = project.history();
+        if ui
+            .add_enabled(history.undo_len() > 0, egui::Button::new("⟲ Undo"))
+            .on_hover_text("Ctrl+Z")
+            .clicked()
+        {
+            asks.push(Command::Undo);
+        }
+        if ui
+            .add_enabled(history.redo_len() > 0, egui::Button::new("⟳ Redo"))
+            .on_hover_text("Ctrl+Shift+Z")
+            .clicked()
+        {
+            asks.push(Command::Redo);
+        }
+        ui.separator();
+        for tool in tools.all() {
+            let active = tools.active().is_some_and(|t| t.id == tool.id);
+            if ui
+                .selectable_label(active, tool.name)
+                .on_hover_text(tool.about)
+                .clicked()
+            {
+                asks.push(Command::Mode(tool.id.clone()));
+            }
+        }
+        ui.separator();
+        if ui
+            .selectable_label(shelf.open, "Library")
+            .on_hover_text("L")
+            .clicked()
+        {
+            asks.push(Command::ToggleLibrary);
+        }
+        ui.separator();
+        step(ui, state, project, &mut asks);
+        ui.separator();
+        let unsaved = if history.is_unsaved() { " •" } else { "" };
+        ui.label(format!("{}{unsaved}", project.title()));
+    });
+    if !left_behind.0.is_empty() {
+        ui.horizontal(|ui| {
+            ui.label("Work from an earlier run was not saved.");
+            if ui.button("Restore it").clicked() {
+                asks.push(Command::Restore);
+            }
+            if ui.button("Leave it").clicked() {
+                asks.push(Command::Dismiss);
+            }
+        });
+    }
+    for (what, fraction) in errands.progress() {
+        ui.horizontal(|ui| {
+            ui.add(egui::ProgressBar::new(fraction).text(what).desired_width(320.0));
+            if ui.button("Cancel").clicked() {
+                asks.push(Command::CancelErrands);
+            }
+        });
+    }
+    ask_path(ui, state, &mut asks);
+    asks
+}
+
+fn files(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {
+    let mut choose = |ui: &mut Ui, text: &str, asking: Asking, ending: &str| {
+        if ui.button(text).clicked() {
+            state.asking = asking;
+            let folder = project.work_folder();
+            state.path = if ending.is_empty() {
+                String::new()
+            } else {
+                folder
+                    .join(format!("{}.{ending}", project.title()))
+                    .display()
+                    .to_string()
+            };
+            ui.close();
+        }
+    };
+    choose(ui, "Open…", Asking::Open, "");
+    choose(ui, "Save as…", Asking::SaveAs, "midair");
+    choose(ui, "Export a mesh…", Asking::Export, "stl");
+    choose(ui, "Import a mesh…", Asking::Import, "");
+    for (text, ask) in [("New", Command::New), ("Save   Ctrl+S", Command::Save)] {
+        if ui.button(text).clicked() {
+            asks.push(ask);
+            ui.close();
+        }
+    }
+}
+
+fn ask_path(ui: &mut Ui, state: &mut Bar, asks: &mut Vec<Command>) {
+    let (verb, hint) = match state.asking {
+        Asking::Nothing => return,
+        Asking::Open => ("Open", "a document: *.midair"),
+        Asking::SaveAs => ("Save", "a document: *.midair"),
+        Asking::Export => ("Export", "a mesh: .stl or .3mf for printing, .glb, .obj, .ply"),
+        Asking::Import => ("Import", "a mesh: .glb, .obj, .stl, .ply"),
+    };
+    let mut done = false;
+    ui.horizontal(|ui| {
+        ui.label(verb);
+        let field = ui.add(
+            egui::TextEdit::singleline(&mut state.path)
+                .hint_text(hint)
+                .desired_width(480.0),
+        );
+        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        if (ui.button(verb).clicked() || entered) && !state.path.trim().is_empty() {
+            let path = PathBuf::from(state.path.trim());
+            asks.push(match state.asking {
+                Asking::Open => Command::Open(path),
+                Asking::SaveAs => Command::SaveAs(path),
+                Asking::Import => Command::Import(vec![path]),
+                _ => Command::Export {
+                    path,
+                    step: None,
+                    unit: None,
+                },
+            });
+            done = true;
+        }
+        done |= ui.button("Cancel").clicked();
+    });
+    if done {
+        state.asking = Asking::Nothing;
+    }
+}
+
+fn step(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {
+    let (least, most) = Document::STEPS;
+    let mut millimetres = state.step.unwrap_or(project.document().step()) * 1e3;
+    ui.label("Step");
+    let slider = ui
+        .add(
+            egui::Slider::new(&mut millimetres, least * 1e3..=most * 1e3)
+                .suffix(" mm")
+                .fixed_decimals(1)
+                .step_by(0.5),
+        )
+        .on_hover_text("How fine solids are made: smaller is finer and slower");
+    if slider.changed() {
+        state.step = Some(millimetres * 1e-3);
+    }
+    if !slider.dragged()
+        && let Some(step) = state.step.take()
+        && step != project.document().step()
+    {
+        asks.push(Command::Step(step));
+    }
+}

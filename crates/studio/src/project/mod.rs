@@ -1,0 +1,202 @@
+//! The work at hand: document, history, journal, where it is saved.
+
+mod begin;
+mod keep;
+mod shelf;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bevy::prelude::*;
+use midair_document::{Document, Edit, History, MeshStore, ObjectId};
+use midair_library::Folders;
+use midair_mesh::{MeshHash, TriMesh};
+
+pub use begin::{Begin, Recoverables};
+pub(crate) use begin::{attach, begin, install};
+pub use keep::KeepPlugin;
+pub use shelf::Shelf;
+
+use crate::notice::Notices;
+
+/// What is selected, by every mode alike.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct Selection(pub Vec<ObjectId>);
+
+/// Where files of the user go.
+#[derive(Resource, Clone, Debug)]
+pub struct Places {
+    /// Library and caches.
+    pub library: Folders,
+    /// Journals of running and crashed sessions.
+    pub journals: PathBuf,
+    /// The five latest autosaves.
+    pub autosaves: PathBuf,
+    /// What *save* and quick exports write.
+    pub work: PathBuf,
+}
+
+impl Places {
+    /// The platform's folders, or everything below `MIDAIR_HOME`.
+    ///
+    /// # Errors
+    ///
+    /// No home folder is known.
+    pub fn of_user() -> Result<Self, midair_library::NoHome> {
+        Folders::of_user().map(Self::in_folders)
+    }
+
+    /// Everything below one folder: portable, or for a test.
+    pub fn below(home: &Path) -> Self {
+        Self::in_folders(Folders::below(home))
+    }
+
+    fn in_folders(library: Folders) -> Self {
+        let state = library.state();
+        Self {
+            journals: state.join("journal"),
+            autosaves: state.join("autosave"),
+            work: library.work(),
+            library,
+        }
+    }
+}
+
+/// The work at hand.
+#[derive(Resource)]
+pub struct Project {
+    history: History,
+    path: Option<PathBuf>,
+    work: PathBuf,
+}
+
+impl Project {
+    /// Goes on with a history; `work` is where files without a place go.
+    pub fn new(history: History, path: Option<PathBuf>, work: PathBuf) -> Self {
+        Self {
+            history,
+            path,
+            work,
+        }
+    }
+
+    /// The document as it stands.
+    pub fn document(&self) -> &Document {
+        self.history.document()
+    }
+
+    /// Steps, undo and redo.
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// The meshes the document names.
+    pub fn meshes(&self) -> &MeshStore {
+        self.history.meshes()
+    }
+
+    /// One of them.
+    pub fn mesh(&self, hash: &MeshHash) -> Option<Arc<TriMesh>> {
+        self.history.meshes().get(*hash)
+    }
+
+    /// The file it was opened from or saved to.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// What people call it.
+    pub fn title(&self) -> String {
+        self.path
+            .as_ref()
+            .and_then(|p| p.file_stem())
+            .map_or("Untitled".into(), |s| s.to_string_lossy().into_owned())
+    }
+
+    /// One gesture: one step that can be undone. What is refused changes nothing and says why.
+    /// Returns whether the document changed.
+    pub fn commit(
+        &mut self,
+        name: impl Into<String>,
+        edits: impl IntoIterator<Item = Edit>,
+        notices: &mut Notices,
+    ) -> bool {
+        let before = self.history.committed();
+        if let Err(reason) = self.history.step(name, edits.into_iter().collect()) {
+            notices.warn(reason.to_string());
+        }
+        self.history.committed() != before
+    }
+
+    /// One step back; what it was called.
+    pub fn undo(&mut self) -> Option<String> {
+        self.history.undo()
+    }
+
+    /// One step forward; what it was called.
+    pub fn redo(&mut self) -> Option<String> {
+        self.history.redo()
+    }
+
+    /// What the history has to say since it was last asked.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        self.history.take_warnings()
+    }
+
+    /// The work is in this file now.
+    pub(crate) fn saved(&mut self, path: PathBuf) {
+        self.history.note_saved(&path);
+        self.path = Some(path);
+    }
+
+    /// Another project takes its place: with nothing unsaved its journal is closed, otherwise it
+    /// stays on disk.
+    pub(crate) fn retire(&mut self) {
+        if !self.history.is_unsaved()
+            && let Some(journal) = self.history.detach()
+        {
+            journal.close();
+        }
+    }
+
+    /// A file of its own for one object: its name, in the work folder, never one that is there.
+    pub fn export_path(&self, object: ObjectId, ending: &str) -> PathBuf {
+        let name = self
+            .document()
+            .object(object)
+            .map_or("object", |o| o.name.as_str());
+        free_path(&self.work, name, ending)
+    }
+
+    /// A file for a document that has none.
+    pub fn new_path(&self) -> PathBuf {
+        free_path(&self.work, "Untitled", "midair")
+    }
+
+    /// Where files without a place go.
+    pub fn work_folder(&self) -> &Path {
+        &self.work
+    }
+}
+
+/// `name.ending`, or `name-2.ending` and so on where that is taken.
+fn free_path(folder: &Path, name: &str, ending: &str) -> PathBuf {
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_alphanumeric() || " -_".contains(c) { c } else { '-' })
+        .collect();
+    let first = folder.join(format!("{name}.{ending}"));
+    if !first.exists() {
+        return first;
+    }
+    (2..)
+        .map(|n| folder.join(format!("{name}-{n}.{ending}")))
+        .find(|p| !p.exists())
+        .unwrap_or(first)
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Selection>();
+    begin::plugin(app);
+    shelf::plugin(app);
+}

@@ -1,0 +1,65 @@
+//! Entities that follow the document, and how they look.
+
+mod cue;
+mod follow;
+mod material;
+mod room;
+
+use std::collections::BTreeMap;
+
+use bevy::{platform::collections::HashMap, prelude::*};
+use midair_document::ObjectId;
+use midair_field::Placement;
+
+pub use cue::{Cue, Cues, Tint};
+pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
+pub use room::{Room, RoomPlugin};
+
+/// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct Drafts(BTreeMap<ObjectId, Placement>);
+
+impl Drafts {
+    /// Where the hand has it now, if a hand has it.
+    pub fn get(&self, object: ObjectId) -> Option<&Placement> {
+        self.0.get(&object)
+    }
+
+    /// Moves the entity without touching the document. An unsound placement (a NaN pose) is left out.
+    pub fn set(&mut self, object: ObjectId, placement: Placement) {
+        if placement.is_sound() {
+            self.0.insert(object, placement);
+        }
+    }
+
+    /// The gesture is over.
+    pub fn take(&mut self, object: ObjectId) -> Option<Placement> {
+        self.0.remove(&object)
+    }
+
+    /// Every gesture is over.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Whether no hand moves anything.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// As Bevy moves entities.
+pub fn transform(p: &Placement) -> Transform {
+    Transform {
+        translation: p.translation,
+        rotation: p.rotation,
+        scale: p.scale,
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Drafts>().init_resource::<Cues>();
+    follow::plugin(app);
+    material::plugin(app);
+    let _: Option<HashMap<(), ()>> = None;
+}

@@ -1,0 +1,50 @@
+//! A window with mouse and keyboard: the pointer is the leading hand.
+//!
+//! Left acts and drags, middle (or Alt and left) orbits, Shift and middle pans, the wheel zooms, or
+//! while something is dragged moves it nearer or farther. The other hand stays where it is and
+//! keeps what it holds; Tab swaps them.
+
+mod keys;
+mod labels;
+mod orbit;
+mod panels;
+mod pointer;
+mod stretch;
+
+use bevy::prelude::*;
+use bevy_egui::{EguiPlugin, EguiPrimaryContextPass};
+use midair_studio::{StudioSet, hands::AdvanceHands};
+
+pub use keys::key_name;
+pub use orbit::Orbit;
+pub use pointer::Pointer;
+
+/// The way in through a window.
+pub struct FlatscreenPlugin;
+
+impl Plugin for FlatscreenPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(EguiPlugin::default())
+            .init_resource::<Pointer>()
+            .init_resource::<panels::Screen>()
+            .add_systems(Startup, orbit::spawn)
+            .add_systems(
+                Update,
+                (
+                    orbit::steer,
+                    // The hand follows the camera of this frame.
+                    pointer::point,
+                    stretch::stretch,
+                    keys::commands,
+                )
+                    .chain()
+                    .in_set(StudioSet::Gather)
+                    .before(AdvanceHands),
+            )
+            .add_systems(Update, (orbit::frame, labels::hands).in_set(StudioSet::Cue))
+            .add_systems(
+                EguiPrimaryContextPass,
+                (panels::style, panels::show, labels::objects).chain(),
+            );
+    }
+}

@@ -1,0 +1,30 @@
+use std::sync::atomic::AtomicBool;
+
+use anyhow::Result;
+use midair_library::Volumes;
+use midair_solid::{ExportOptions, export};
+use midair_studio::project::Places;
+
+use super::{Export, open};
+
+pub(super) fn run(args: Export) -> Result<()> {
+    let (document, store) = open(&args.file)?;
+    let volumes = Volumes::new(&Places::of_user()?.library);
+    let meshes = store.clone();
+    volumes.add_meshes(move |hash| meshes.get(*hash));
+    let options = ExportOptions {
+        step: args.step,
+        unit: args.unit,
+        only: None,
+    };
+    let triangles = export(
+        &args.to,
+        &document,
+        &store,
+        &volumes,
+        &options,
+        &AtomicBool::new(false),
+    )?;
+    println!("{}: {triangles} triangles", args.to.display());
+    Ok(())
+}

@@ -1,0 +1,78 @@
+use std::sync::atomic::AtomicBool;
+
+use anyhow::{Context, Result};
+use midair_document::save;
+use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
+use midair_solid::{ExportOptions, export};
+use midair_studio::evaluate::Evaluations;
+use midair_studio::project::{Begin, Places, Project};
+
+use super::{Play, open};
+use crate::{Stage, app, probe, shot};
+
+pub(super) fn run(args: Play) -> Result<()> {
+    let session = Session::load(&args.session)?;
+    let opened = match &args.open {
+        Some(file) => {
+            let (document, meshes) = open(file)?;
+            Some((document, meshes, file.clone()))
+        }
+        None => None,
+    };
+    let stage = if args.shot.is_some() {
+        Stage::Picture
+    } else {
+        Stage::Bare
+    };
+    let begin = Begin {
+        opened,
+        journal: false,
+    };
+    let mut app = app(stage, Places::of_user()?, begin);
+    app.add_plugins(PlayerPlugin);
+    if let Some(record) = &args.record {
+        app.add_plugins(RecorderPlugin::create(record, session.title())?);
+    }
+    let options = PlayOptions {
+        hands_only: args.hands_only,
+        probe,
+        ..PlayOptions::default()
+    };
+    let played = play(&mut app, session, options);
+    // What was made up to a failure is still worth having: a report, a picture.
+    let report = played?;
+    for warning in &report.warnings {
+        eprintln!("midair: {warning}");
+    }
+    let world = app.world();
+    let project = world.resource::<Project>();
+    if let Some(file) = &args.save {
+        for warning in save(file, project.document(), project.meshes())? {
+            eprintln!("midair: {warning}");
+        }
+    }
+    let volumes = world.resource::<Evaluations>().volumes.clone();
+    for file in &args.export {
+        let options = ExportOptions {
+            step: args.step,
+            ..ExportOptions::default()
+        };
+        export(
+            file,
+            project.document(),
+            project.meshes(),
+            &*volumes,
+            &options,
+            &AtomicBool::new(false),
+        )?;
+    }
+    if let Some(file) = &args.report {
+        let text = serde_json::to_string_pretty(&report)?;
+        std::fs::write(file, text + "\n")
+            .with_context(|| format!("{} was not written", file.display()))?;
+    }
+    if let Some(file) = &args.shot {
+        shot::picture(&mut app, file)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+use std::path::Path;
+
+use anyhow::{Result, bail};
+use midair_document::{Document, MeshStore, Object};
+use midair_playback::RecorderPlugin;
+use midair_studio::project::{Begin, Places};
+
+use super::{Window, open};
+use crate::{Stage, app, shot};
+
+pub(super) fn run(args: Window) -> Result<()> {
+    if args.vr {
+        bail!(
+            "this Midair has no headset support built in, so no headset can be used. \
+             Start it without --vr for the flat screen"
+        );
+    }
+    if !has_display() {
+        bail!(
+            "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set). Start Midair on a \
+             desktop, or run a session without one: midair play assets/sessions/cup.ron --export cup.stl"
+        );
+    }
+    let places = Places::of_user()?;
+    let opened = match &args.file {
+        Some(file) => Some(begin(file, &places)?),
+        None => None,
+    };
+    let mut app = app(
+        Stage::Window,
+        places,
+        Begin {
+            opened,
+            journal: true,
+        },
+    );
+    if let Some(record) = args.record {
+        app.add_plugins(RecorderPlugin::create(&record, "Recorded live")?);
+    }
+    if let Some(file) = args.shot {
+        shot::window(&mut app, file);
+    }
+    match app.run() {
+        bevy::app::AppExit::Success => Ok(()),
+        bevy::app::AppExit::Error(code) => bail!("the window ended with status {code}"),
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn has_display() -> bool {
+    ["DISPLAY", "WAYLAND_DISPLAY"]
+        .iter()
+        .any(|v| std::env::var_os(v).is_some_and(|d| !d.is_empty()))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn has_display() -> bool {
+    true
+}
+
+/// A document, or a mesh in an otherwise empty one.
+fn begin(
+    file: &Path,
+    places: &Places,
+) -> Result<(Document, MeshStore, std::path::PathBuf)> {
+    if file.extension().is_some_and(|e| e == "midair") {
+        let (document, meshes) = open(file)?;
+        return Ok((document, meshes, file.to_owned()));
+    }
+    let component = midair_library::import(
+        &places.library,
+        file,
+        None,
+        &midair_field::bake::Progress::new(),
+    )?;
+    let mut history =
+        midair_document::History::new(Document::new(), MeshStore::new());
+    history.add(Object::solid(component.name.clone(), component.placed()))?;
+    let shelf = midair_library::MeshShelf::new(places.library.meshes());
+    for hash in history.document().meshes() {
+        if let Some(mesh) = shelf.mesh(&hash) {
+            history.meshes().insert(mesh);
+        }
+    }
+    let document = history.document().clone();
+    let store = history.meshes().clone();
+    Ok((document, store, file.with_extension("midair")))
+}

@@ -1,0 +1,98 @@
+//! Midair, put together: which plugins make the app, and the command line.
+
+pub mod cli;
+mod report;
+mod shot;
+
+use std::sync::Arc;
+
+use bevy::ecs::error::{FallbackErrorHandler, warn};
+use bevy::prelude::*;
+use bevy::render::RenderPlugin;
+use bevy::render::settings::{RenderCreation, WgpuSettings};
+use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
+use midair_csg::AssemblePlugin;
+use midair_flatscreen::FlatscreenPlugin;
+use midair_library::Volumes;
+use midair_studio::{
+    StudioPlugin,
+    evaluate::Evaluations,
+    project::{Begin, KeepPlugin, Places},
+    show::RoomPlugin,
+};
+
+pub use report::probe;
+
+/// Every mode, on the studio.
+pub struct MidairPlugins;
+
+impl Plugin for MidairPlugins {
+    fn build(&self, app: &mut App) {
+        // A user's bad input never ends the app: what a system reports is logged.
+        app.insert_resource(FallbackErrorHandler(warn))
+            .add_plugins((StudioPlugin, AssemblePlugin));
+    }
+}
+
+/// Where the app runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// In a window.
+    Window,
+    /// Without a window or a graphics card.
+    Bare,
+    /// Without a window, but able to draw a picture.
+    Picture,
+}
+
+/// The app for a stage, with `places` for the user's files, ready for its first update.
+pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
+    let mut app = App::new();
+    let window = WindowPlugin {
+        primary_window: (stage == Stage::Window).then(|| Window {
+            title: "Midair".to_owned(),
+            name: Some("midair".to_owned()),
+            resolution: (1280, 720).into(),
+            ..default()
+        }),
+        exit_condition: if stage == Stage::Window {
+            ExitCondition::OnPrimaryClosed
+        } else {
+            ExitCondition::DontExit
+        },
+        ..default()
+    };
+    let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
+        // The app's own lines are what a person should see.
+        filter: "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn".into(),
+        ..default()
+    });
+    if stage != Stage::Window {
+        plugins = plugins.disable::<WinitPlugin>();
+    }
+    if stage == Stage::Bare {
+        plugins = plugins.set(RenderPlugin {
+            render_creation: RenderCreation::Automatic(Box::new(WgpuSettings {
+                backends: None,
+                ..default()
+            })),
+            ..default()
+        });
+    }
+    app.add_plugins(plugins);
+    app.insert_resource(Evaluations::new(Arc::new(Volumes::new(&places.library))))
+        .insert_resource(places)
+        .insert_resource(begin)
+        .add_plugins(MidairPlugins);
+    match stage {
+        Stage::Window => {
+            app.add_plugins((RoomPlugin, FlatscreenPlugin, KeepPlugin));
+        }
+        Stage::Picture => {
+            app.add_plugins(RoomPlugin);
+        }
+        Stage::Bare => {}
+    }
+    app
+}

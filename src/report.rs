@@ -1,0 +1,75 @@
+//! What a session made, for `--report`.
+
+use std::sync::atomic::AtomicBool;
+
+use bevy::prelude::*;
+use midair_document::{Kind, Object};
+use midair_field::{MeshSource, Placement};
+use midair_mesh::{TriMesh, check};
+use midair_playback::{ObjectReport, Report, UpdateReport};
+use midair_solid::Solid;
+use midair_studio::evaluate::Evaluations;
+use midair_studio::project::Project;
+
+/// Reads the world at the end of a session.
+pub fn probe(world: &mut World) -> Report {
+    let project = world.resource::<Project>();
+    let evaluations = world.resource::<Evaluations>();
+    let document = project.document();
+    let history = project.history();
+    let objects = document
+        .objects()
+        .map(|(id, object)| {
+            let mesh = mesh_of(object, project, &*evaluations.volumes, document.step());
+            let closed = mesh.as_ref().map(|m| check(m).watertight);
+            ObjectReport {
+                id: id.0,
+                kind: match object.kind {
+                    Kind::Solid(_) => "solid".to_owned(),
+                    Kind::Foreign { ref tool, .. } => tool.clone(),
+                },
+                name: object.name.clone(),
+                transform: Mat4::from(object.placement.affine()).to_cols_array(),
+                triangles: mesh.as_ref().map_or(0, |m| m.triangles.len()),
+                volume: mesh.as_ref().map(TriMesh::volume),
+                closed,
+            }
+        })
+        .collect();
+    Report {
+        objects,
+        edits: history.committed() as usize,
+        undo: history.undo_len(),
+        redo: history.redo_len(),
+        updates: evaluations
+            .updates()
+            .iter()
+            .map(|u| UpdateReport {
+                fuse_ms: u.fuse_ms,
+                extract_ms: u.extract_ms,
+                triangles: u.triangles,
+            })
+            .collect(),
+        ..Report::default()
+    }
+}
+
+/// The surface in world size, at the document's step.
+fn mesh_of(
+    object: &Object,
+    project: &Project,
+    volumes: &dyn MeshSource,
+    step: f32,
+) -> Option<TriMesh> {
+    let about = Placement {
+        translation: Vec3::ZERO,
+        ..object.placement
+    };
+    match &object.kind {
+        Kind::Solid(recipe) => {
+            let solid = Solid::make(recipe, &about, step, volumes, &AtomicBool::new(false));
+            solid.ok().map(|s| s.mesh())
+        }
+        Kind::Foreign { mesh, .. } => project.mesh(mesh).map(|m| m.transformed(&about.affine())),
+    }
+}

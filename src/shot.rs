@@ -1,0 +1,140 @@
+//! Pictures of the work.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+use bevy::camera::RenderTarget;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::prelude::*;
+use bevy::render::render_resource::TextureFormat;
+use bevy::render::renderer::RenderDevice;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use midair_studio::evaluate::Evaluations;
+use midair_studio::project::Project;
+
+/// How long a picture may take: a software renderer compiles its shaders first.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A picture that has come back.
+#[derive(Resource, Default)]
+struct Taken(Option<Image>);
+
+/// Draws what the session made, without a window, and saves it.
+pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
+    if app.world().get_resource::<RenderDevice>().is_none() {
+        bail!(
+            "{} was not drawn: no graphics driver was found. Install Mesa's software one \
+             (mesa-vulkan-drivers), or play without --shot",
+            file.display()
+        );
+    }
+    let target = {
+        let mut images = app.world_mut().resource_mut::<Assets<Image>>();
+        images.add(Image::new_target_texture(
+            1280,
+            720,
+            TextureFormat::Rgba8UnormSrgb,
+            None,
+        ))
+    };
+    let view = frame_all(app.world());
+    app.world_mut().spawn((
+        Camera3d::default(),
+        RenderTarget::from(target.clone()),
+        Tonemapping::AcesFitted,
+        Msaa::Sample4,
+        view,
+    ));
+    // Shadows and pipelines settle in the first frames.
+    for _ in 0..8 {
+        app.update();
+    }
+    app.init_resource::<Taken>();
+    app.world_mut().spawn(Screenshot::image(target)).observe(
+        |shot: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| {
+            taken.0 = Some(shot.image.clone());
+        },
+    );
+    let started = Instant::now();
+    loop {
+        app.update();
+        if let Some(image) = app.world_mut().resource_mut::<Taken>().0.take() {
+            return store(image, file);
+        }
+        if started.elapsed() > PATIENCE {
+            bail!(
+                "{} was not drawn within {} s. Play without --shot",
+                file.display(),
+                PATIENCE.as_secs()
+            );
+        }
+    }
+}
+
+fn store(image: Image, file: &Path) -> Result<()> {
+    let picture = image.try_into_dynamic()?.to_rgb8();
+    picture
+        .save(file)
+        .map_err(|e| anyhow::anyhow!("{} was not written: {e}", file.display()))
+}
+
+/// Looks at everything from the front, a little from above and the right.
+fn frame_all(world: &World) -> Transform {
+    let mut low = Vec3::INFINITY;
+    let mut high = Vec3::NEG_INFINITY;
+    for (_, object) in world.resource::<Project>().document().objects() {
+        let radius = object
+            .recipe()
+            .map(|r| r.bounds())
+            .filter(|b| !b.is_empty())
+            .map_or(0.3, |b| {
+                0.8 * (b.min.abs().max(b.max.abs()) * object.placement.scale.abs()).length()
+            });
+        low = low.min(object.placement.translation - radius);
+        high = high.max(object.placement.translation + radius);
+    }
+    let (centre, radius) = if low.cmple(high).all() {
+        (low.midpoint(high), 0.5 * (high - low).length())
+    } else {
+        (Vec3::new(0.0, 0.2, 0.0), 0.6)
+    };
+    let from = Vec3::new(0.55, 0.42, 1.0).normalize();
+    Transform::from_translation(centre + from * radius * 2.3).looking_at(centre, Vec3::Y)
+}
+
+/// In a window: saves a picture once everything is made and drawn, and ends the app.
+pub(crate) fn window(app: &mut App, file: PathBuf) {
+    let mut settled = 0;
+    app.init_resource::<Taken>().add_systems(
+        Last,
+        move |evaluations: Res<Evaluations>,
+              mut taken: ResMut<Taken>,
+              mut commands: Commands,
+              mut exit: MessageWriter<AppExit>| {
+            if let Some(image) = taken.0.take() {
+                let done = store(image, &file);
+                if let Err(error) = &done {
+                    eprintln!("midair: {error:#}");
+                }
+                exit.write(if done.is_ok() {
+                    AppExit::Success
+                } else {
+                    AppExit::error()
+                });
+            }
+            settled = if evaluations.outstanding() == 0 {
+                settled + 1
+            } else {
+                0
+            };
+            if settled == 20 {
+                commands.spawn(Screenshot::primary_window()).observe(
+                    |shot: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| {
+                        taken.0 = Some(shot.image.clone());
+                    },
+                );
+            }
+        },
+    );
+}
