@@ -107,7 +107,8 @@ fn frame_all(world: &World) -> Transform {
 pub(crate) fn window(app: &mut App, file: PathBuf) {
     let mut settled = 0;
     app.init_resource::<Taken>().add_systems(
-        Last,
+        // Before the end of the frame, where a clean end is seen.
+        PostUpdate,
         move |evaluations: Res<Evaluations>,
               mut taken: ResMut<Taken>,
               mut commands: Commands,

@@ -6,10 +6,13 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 
 use bevy::prelude::*;
-use midair_document::{Document, History, MeshStore, ObjectId, Opened, open, save};
+use midair_document::{
+    Document, Edit, History, Journal, MeshSpool, MeshStore, Object, ObjectId, Opened, open, save,
+};
+use midair_field::Recipe;
 use midair_field::bake::Progress;
-use midair_library::Component;
-use midair_mesh::Unit;
+use midair_library::{Component, Volumes};
+use midair_mesh::{MeshHash, TriMesh, Unit};
 use midair_solid::{ExportOptions, export};
 
 use crate::StudioSet;
@@ -30,6 +33,8 @@ pub(crate) enum Errand {
         only: Option<ObjectId>,
     },
     Import(PathBuf),
+    /// Fetch the meshes of a library component before it is placed.
+    Place(Box<Object>),
     Restore,
     Dismiss,
 }
@@ -40,6 +45,7 @@ enum Outcome {
     Saved(PathBuf, Vec<String>),
     Exported(PathBuf, usize),
     Imported(Box<Component>),
+    Fetched(Box<Object>, Vec<Arc<TriMesh>>),
     Failed(String),
     Cancelled,
 }
@@ -60,7 +66,7 @@ pub struct Errands {
     running: Vec<Running>,
     /// Done at once in the next exclusive step: they replace the work at hand.
     now: Vec<Errand>,
-    volumes: Option<Arc<midair_library::Volumes>>,
+    volumes: Option<Arc<Volumes>>,
 }
 
 impl Errands {
@@ -92,6 +98,24 @@ impl Errands {
         for running in &self.running {
             running.progress.cancel();
             running.cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Puts an object into the document. A mesh that the document does not hold yet is read, and
+    /// handed to the journal, off the frame first: from then on it travels with the document.
+    pub(crate) fn place(
+        &mut self,
+        object: Object,
+        project: &mut Project,
+        places: &Places,
+        notices: &mut Notices,
+    ) {
+        let held = |hash: &MeshHash| project.meshes().contains(*hash);
+        let whole = object.recipe().is_none_or(|r| r.meshes().iter().all(held));
+        if whole {
+            add(object, project, notices);
+        } else {
+            self.start(Errand::Place(Box::new(object)), project, places);
         }
     }
 
@@ -150,6 +174,13 @@ impl Errands {
                     }),
                 )
             }
+            Errand::Place(object) => {
+                let spool = project.history().journal().map(Journal::spool);
+                (
+                    format!("Placing {}", object.name),
+                    Box::new(move || fetch(object, volumes, spool)),
+                )
+            }
             Errand::Import(path) => {
                 let (folders, progress) = (places.library.clone(), progress.clone());
                 (
@@ -183,6 +214,32 @@ impl Errands {
             });
         }
     }
+}
+
+/// Reads what an object is made of from the library.
+fn fetch(object: Box<Object>, volumes: Option<Arc<Volumes>>, spool: Option<MeshSpool>) -> Outcome {
+    let mut meshes = Vec::new();
+    for hash in object.recipe().map(Recipe::meshes).unwrap_or_default() {
+        let Some(mesh) = volumes.as_ref().and_then(|v| v.mesh(&hash)) else {
+            return Outcome::Failed(format!(
+                "The mesh of {} is gone from the library. Import it again.",
+                object.name
+            ));
+        };
+        if let Some(spool) = &spool {
+            // A disk that is full is the journal's to report, at the commit.
+            let _ = spool.write(&mesh);
+        }
+        meshes.push(mesh);
+    }
+    Outcome::Fetched(object, meshes)
+}
+
+fn add(object: Object, project: &mut Project, notices: &mut Notices) {
+    let id = ObjectId(project.document().next_id());
+    let name = format!("Place {}", object.name);
+    let object = object.into();
+    project.commit(name, [Edit::Add { id, object }], notices);
 }
 
 fn name(path: &std::path::Path) -> String {
@@ -258,6 +315,15 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 let mut notices = world.resource_mut::<Notices>();
                 notices.info(format!("{} is in the library now.", component.name));
                 shelf.reload(&places, &mut notices);
+            });
+        }
+        Outcome::Fetched(object, meshes) => {
+            world.resource_scope(|world, mut notices: Mut<Notices>| {
+                let mut project = world.resource_mut::<Project>();
+                for mesh in meshes {
+                    project.meshes().insert(mesh);
+                }
+                add(*object, &mut project, &mut notices);
             });
         }
         Outcome::Failed(reason) => world.resource_mut::<Notices>().warn(reason),

@@ -1,7 +1,7 @@
 //! Carries commands out.
 
 use bevy::prelude::*;
-use midair_document::{Edit, Object, ObjectId};
+use midair_document::{Edit, Object};
 use midair_field::Placement;
 
 use super::{Command, errand::Errand, errand::Errands};
@@ -63,7 +63,11 @@ fn handle(
             }
             Command::ToggleLibrary => shelf.open = !shelf.open,
             Command::Place { component, side } => {
-                place(component, *side, &shelf, &hands, &mut project, &mut notices);
+                if let Some(object) =
+                    placed(component, *side, &shelf, &hands, &mut notices)
+                {
+                    errands.place(object, &mut project, &places, &mut notices);
+                }
             }
             Command::Mode(id) => {
                 if !tools.activate(id.as_str()) {
@@ -130,41 +134,31 @@ fn handle(
     }
 }
 
-/// The wand has picked a component: it appears at the hand.
-fn place(
+/// The wand has picked a component: it is to appear at the hand.
+fn placed(
     component: &str,
     side: Side,
     shelf: &Shelf,
     hands: &Hands,
-    project: &mut Project,
     notices: &mut Notices,
-) {
+) -> Option<Object> {
     if !shelf.open {
         notices.warn("The library is closed: open it first, then pick a component.");
-        return;
+        return None;
     }
     let Some(found) = shelf.library.get(component) else {
         notices.warn(format!(
             "The library has no component \"{component}\". \"midair library\" lists what there is."
         ));
-        return;
+        return None;
     };
     if found.missing {
         notices.warn(format!(
             "The mesh of {} is gone from the library. Import it again.",
             found.name
         ));
-        return;
+        return None;
     }
     let at = Placement::at(hands.get(side).pose.position);
-    let object = Object::solid(found.name.clone(), found.placed()).placed(at);
-    let id = ObjectId(project.document().next_id());
-    project.commit(
-        format!("Place {}", found.name),
-        [Edit::Add {
-            id,
-            object: object.into(),
-        }],
-        notices,
-    );
+    Some(Object::solid(found.name.clone(), found.placed()).placed(at))
 }

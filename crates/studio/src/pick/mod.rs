@@ -11,6 +11,7 @@ use midair_document::ObjectId;
 use crate::{
     StudioSet,
     hands::{Hands, Side},
+    project::Project,
     show::{Drafts, ObjectEntity},
 };
 
@@ -151,6 +152,7 @@ pub fn cast(
 }
 
 fn follow(
+    project: Res<Project>,
     drafts: Res<Drafts>,
     objects: Query<(&ObjectEntity, &Transform, &Visibility), Without<Proxy>>,
     mut proxies: Query<(&Proxy, &mut Transform, Has<ColliderDisabled>, Entity)>,
@@ -163,9 +165,10 @@ fn follow(
             commands.entity(entity).despawn();
             continue;
         };
-        let hidden = *visibility == Visibility::Hidden;
-        if hidden != disabled {
-            if hidden {
+        // Hands pass through what is hidden and what is locked.
+        let passed = *visibility == Visibility::Hidden || project.document().is_locked(proxy.object);
+        if passed != disabled {
+            if passed {
                 commands.entity(entity).insert(ColliderDisabled);
             } else {
                 commands.entity(entity).remove::<ColliderDisabled>();

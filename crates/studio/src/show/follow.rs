@@ -131,32 +131,30 @@ fn show(
         };
         let made = match &object.kind {
             Kind::Solid(recipe) => {
-                let step = display_step(document, object, recipe);
-                let key = Key::new(recipe, step);
-                if showing.solid == Some(key) {
+                // The document's step first, which is what update makes; then finer, for the eye.
+                let steps = display_steps(document, object, recipe);
+                let shown = showing.solid;
+                let best = steps
+                    .into_iter()
+                    .take_while(|&s| shown != Some(Key::new(recipe, s)))
+                    .filter_map(|s| Some((Key::new(recipe, s), evaluations.want(recipe, s)?)))
+                    .next();
+                let Some((key, made)) = best else {
+                    if showing.made.is_none() && children.is_none() {
+                        stand_in(recipe, &mut evaluations, &drawn, entity, document, &mut commands);
+                    }
                     continue;
-                }
-                match evaluations.want(recipe, step) {
-                    Some(made) => {
-                        showing.solid = Some(key);
-                        let handle = drawn.0.get(&key).filter(|h| meshes.contains(h.id())).cloned();
-                        let handle = handle.unwrap_or_else(|| {
-                            let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
-                            let handle =
-                                meshes.add(mesh.unwrap_or_else(|| to_bevy_mesh(&made.mesh)));
-                            drawn.0.insert(key, handle.clone());
-                            handle
-                        });
-                        commands.entity(entity).insert(Mesh3d(handle));
-                        made
-                    }
-                    None => {
-                        if showing.made.is_none() && children.is_none() {
-                            stand_in(recipe, step, entity, &mut evaluations, &drawn, &mut commands);
-                        }
-                        continue;
-                    }
-                }
+                };
+                showing.solid = Some(key);
+                let known = drawn.0.get(&key).filter(|h| meshes.contains(h.id()));
+                let handle = known.cloned().unwrap_or_else(|| {
+                    let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
+                    let handle = meshes.add(mesh.unwrap_or_else(|| to_bevy_mesh(&made.mesh)));
+                    drawn.0.insert(key, handle.clone());
+                    handle
+                });
+                commands.entity(entity).insert(Mesh3d(handle));
+                made
             }
             Kind::Foreign { mesh: hash, .. } => {
                 if showing.mesh == Some(*hash) {
@@ -202,50 +200,48 @@ fn show(
     });
 }
 
-/// The step in the object's own frame that gives the document's step in the world, halved for single
-/// components, whose edges are what one sees. In powers of two, so that scaling makes few of them.
-pub(crate) fn display_step(document: &Document, object: &Object, recipe: &Recipe) -> f32 {
+/// The steps in the object's own frame at which it is shown, the finest first: the one that gives the
+/// document's step in the world, and half of it, since a screen shows what a quick update need not.
+/// In powers of two, so that scaling makes few of them.
+fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> Vec<f32> {
     let scale = object.placement.scale.abs().max_element();
     let halvings = scale.max(1e-3).log2().ceil().clamp(-4.0, 6.0);
-    let fine = if is_component(recipe) { 0.5 } else { 1.0 };
-    document.step() * fine * (-halvings).exp2()
-}
-
-fn is_component(recipe: &Recipe) -> bool {
-    matches!(recipe.node(), Node::Component { .. } | Node::Primitive(_))
+    let step = document.step() * (-halvings).exp2();
+    // Below this the eye gains nothing and the memory pays.
+    let fine = document.step() >= 0.004;
+    match recipe.node() {
+        Node::Component { .. } | Node::Primitive(_) if fine => vec![0.5 * step],
+        _ if fine => vec![0.5 * step, step],
+        _ => vec![step],
+    }
 }
 
 /// Until a fresh result is there, its operands are shown where they stood.
 fn stand_in(
     recipe: &Recipe,
-    step: f32,
-    parent: Entity,
     evaluations: &mut Evaluations,
     drawn: &Drawn,
+    parent: Entity,
+    document: &Document,
     commands: &mut Commands,
 ) {
     let Node::Solid(operands) = recipe.node() else {
         return;
     };
-    for operand in operands {
-        if operand.op != midair_field::Op::Union {
-            continue;
-        }
-        let found = [1.0, 0.5, 0.25, 2.0]
-            .map(|f| Key::new(&operand.recipe, step * f))
+    for operand in operands.iter().filter(|o| o.op == midair_field::Op::Union) {
+        let as_object = Object::solid("", operand.recipe.clone()).placed(operand.placement);
+        let found = display_steps(document, &as_object, &operand.recipe)
             .into_iter()
+            .map(|step| Key::new(&operand.recipe, step))
             .find_map(|key| evaluations.peek(&key).and(drawn.0.get(&key)));
         if let Some(handle) = found {
-            let child = commands
-                .spawn((
-                    StandIn,
-                    Mesh3d(handle.clone()),
-                    MeshMaterial3d::<StandardMaterial>::default(),
-                    transform(&operand.placement),
-                    ChildOf(parent),
-                ))
-                .id();
-            let _ = child;
+            commands.spawn((
+                StandIn,
+                Mesh3d(handle.clone()),
+                MeshMaterial3d::<StandardMaterial>::default(),
+                transform(&operand.placement),
+                ChildOf(parent),
+            ));
         }
     }
 }

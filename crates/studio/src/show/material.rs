@@ -1,7 +1,6 @@
 use bevy::{platform::collections::HashMap, prelude::*};
 
 use super::{Cue, Cues, ObjectEntity, Tint};
-use crate::StudioSet;
 
 /// One material per look, made when first needed.
 #[derive(Resource, Default)]
@@ -36,7 +35,6 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Looks>()
         // After the tools have said how things should look in this frame.
         .add_systems(PostUpdate, paint);
-    let _ = StudioSet::Cue;
 }
 
 fn paint(

@@ -7,7 +7,7 @@ mod room;
 
 use std::collections::BTreeMap;
 
-use bevy::{platform::collections::HashMap, prelude::*};
+use bevy::prelude::*;
 use midair_document::ObjectId;
 use midair_field::Placement;
 
@@ -61,5 +61,4 @@ pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Drafts>().init_resource::<Cues>();
     follow::plugin(app);
     material::plugin(app);
-    let _: Option<HashMap<(), ()>> = None;
 }
