@@ -4,6 +4,10 @@ use anyhow::{Result, anyhow, bail};
 use midair_mesh::{check, read};
 use serde_json::{Value, json};
 
+use super::say;
+
+use super::say;
+
 pub(super) fn run(files: &[PathBuf], as_json: bool) -> Result<()> {
     let mut faulty = Vec::new();
     let mut all = Vec::new();
@@ -16,14 +20,14 @@ pub(super) fn run(files: &[PathBuf], as_json: bool) -> Result<()> {
         if as_json {
             all.push(value);
         } else {
-            println!("{}\n{}", file.display(), text.trim_end());
+            say(format_args!("{}\n{}", file.display(), text.trim_end()))?;
         }
         if let Some(first) = faults.first() {
             faulty.push(format!("{}: {first}", file.display()));
         }
     }
     if as_json {
-        println!("{}", serde_json::to_string_pretty(&all)?);
+        say(serde_json::to_string_pretty(&all)?)?;
     }
     match faulty.len() {
         0 => Ok(()),

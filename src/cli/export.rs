@@ -5,7 +5,7 @@ use midair_library::Volumes;
 use midair_solid::{ExportOptions, export};
 use midair_studio::project::Places;
 
-use super::{Export, open};
+use super::{Export, open, say};
 
 pub(super) fn run(args: Export) -> Result<()> {
     let (document, store) = open(&args.file)?;
@@ -25,6 +25,5 @@ pub(super) fn run(args: Export) -> Result<()> {
         &options,
         &AtomicBool::new(false),
     )?;
-    println!("{}: {triangles} triangles", args.to.display());
-    Ok(())
+    say(format_args!("{}: {triangles} triangles", args.to.display()))
 }

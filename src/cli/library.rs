@@ -2,6 +2,10 @@ use anyhow::Result;
 use midair_library::Library;
 use midair_studio::project::Places;
 
+use super::say;
+
+use super::say;
+
 pub(super) fn run(json: bool) -> Result<()> {
     let library = Library::load(&Places::of_user()?.library);
     for warning in library.warnings() {
@@ -12,6 +16,5 @@ pub(super) fn run(json: bool) -> Result<()> {
     } else {
         library.to_text()
     };
-    println!("{}", listing.trim_end());
-    Ok(())
+    say(listing.trim_end())
 }

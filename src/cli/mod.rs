@@ -8,9 +8,10 @@ mod library;
 mod play;
 mod window;
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use midair_document::{Document, MeshStore};
 
@@ -175,6 +176,14 @@ pub fn run(cli: Cli) -> Result<()> {
     }
 }
 
+/// A line on standard output. A reader who has seen enough is no failure; a full disk is.
+fn say(line: impl std::fmt::Display) -> Result<()> {
+    match writeln!(io::stdout().lock(), "{line}") {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        outcome => outcome.context("standard output cannot be written"),
+    }
+}
+
 /// Reads a document, or a mesh as a document of one object. Warnings go to standard error.
 fn open(path: &std::path::Path) -> Result<(Document, MeshStore)> {
     let opened = midair_document::open(path)?;
@@ -182,4 +191,13 @@ fn open(path: &std::path::Path) -> Result<(Document, MeshStore)> {
         eprintln!("midair: {warning}");
     }
     Ok((opened.document, opened.meshes))
+}
+
+/// Writes to standard output. Whoever reads may have seen enough (`| head`): that is no failure.
+fn say(text: &str) -> Result<()> {
+    use std::io::Write;
+    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
 }

@@ -15,17 +15,17 @@ pub(super) fn run(args: Window) -> Result<()> {
              Start it without --vr for the flat screen"
         );
     }
+    let places = Places::of_user()?;
+    let opened = match &args.file {
+        Some(file) => Some(begin(file, &places)?),
+        None => None,
+    };
     if !has_display() {
         bail!(
             "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set). Start Midair on a \
              desktop, or run a session without one: midair play assets/sessions/cup.ron --export cup.stl"
         );
     }
-    let places = Places::of_user()?;
-    let opened = match &args.file {
-        Some(file) => Some(begin(file, &places)?),
-        None => None,
-    };
     let mut app = app(
         Stage::Window,
         places,
