@@ -49,8 +49,10 @@ pub enum FuseError {
 /// From large blocks down to bricks, φ is bounded on each (by the value at its centre and
 /// |∇φ| ≤ 1, or by a baked mesh's own summaries): blocks wholly inside or outside are done, and the
 /// others hand down only the operands that can win there. A brick holds values exactly where the
-/// bounds let φ be zero on it or within a cell around it. The values are those of evaluating
-/// everything everywhere, bit for bit, on any number of threads; |φ| < 1e-4·step becomes
+/// bounds let φ be zero within two steps of its nodes: wherever a normal of the surface is taken
+/// from differences, these are there. The values are those of evaluating
+/// everything everywhere, bit for bit, on any number of threads; only in a union, three steps or more
+/// outside, may they be those of fewer operands and so larger. |φ| < 1e-4·step becomes
 /// +1e-4·step, so that no triangle is without area.
 ///
 /// # Errors
@@ -200,8 +202,7 @@ impl Descent<'_> {
         let step = self.program.step();
         let nodes = (BRICK << level) as f32;
         let centre = (coord.as_vec3() * nodes + 0.5 * (nodes - 1.0)) * step;
-        // Half the nodes' extent and one cell around.
-        let half = (0.5 * (nodes - 1.0) + 1.0) * step;
+        let half = 0.5 * (nodes - 1.0) * step;
         // For rounding, and for values lifted to 1e-4 steps; wider above than below, so that what
         // is settled on a large block would be settled on each of its bricks as well.
         let slack = self.slack * (1.0 + 0.25 * level as f32);

@@ -17,6 +17,8 @@ pub(crate) struct Leaf {
     diagonal: f32,
     /// Half extents of that cube's local box.
     extent: Vec3,
+    /// And of the unit ball's.
+    reach: Vec3,
 }
 
 #[derive(Clone, Debug)]
@@ -45,6 +47,10 @@ impl Leaf {
                 .fold(0.0, f32::max)
                 * 1.000_001,
             extent: Vec3::from(m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()),
+            reach: Vec3::from(
+                (m.x_axis * m.x_axis + m.y_axis * m.y_axis + m.z_axis * m.z_axis)
+                    .map(|x| x.sqrt() * 1.000_001),
+            ),
         }
     }
 
@@ -58,29 +64,32 @@ impl Leaf {
             }
     }
 
-    /// The greatest |∇φ| over a cube, where it is known; a baked mesh may be steep at its holes.
-    pub fn slope(&self, centre: Vec3, half: f32) -> Option<f32> {
+    /// The greatest |∇φ| no further than `around` from a cube, where it is known; a baked mesh may
+    /// be steep at its holes.
+    pub fn slope(&self, centre: Vec3, half: f32, around: f32) -> Option<f32> {
         match &self.source {
             Source::Shape(_) => Some(1.0),
             Source::Volume(v) => {
                 let c = self.to_local.transform_point3(centre);
-                v.steepest(&Aabb::around(c, self.extent * half))
+                v.steepest(&Aabb::around(c, self.extent * half + self.reach * around))
             }
         }
     }
 
-    /// Bounds of φ over the cube of half side `half` about `centre`, up to rounding.
-    pub fn range(&self, centre: Vec3, half: f32) -> (f32, f32) {
+    /// Bounds of φ no further than `around` from the cube of half side `half` about `centre`, up to
+    /// rounding.
+    pub fn range(&self, centre: Vec3, half: f32, around: f32) -> (f32, f32) {
         let c = self.to_local.transform_point3(centre);
+        let r = half * self.diagonal + around / self.scale;
         match &self.source {
             Source::Shape(s) => {
                 // |∇φ_local| ≤ 1.
-                let (v, r) = (s.at(c), half * self.diagonal);
+                let v = s.at(c);
                 (self.scale * (v - r), self.scale * (v + r))
             }
             Source::Volume(v) => {
-                let local = Aabb::around(c, self.extent * half);
-                let (lo, hi) = v.bound(&local, half * self.diagonal);
+                let local = Aabb::around(c, self.extent * half + self.reach * around);
+                let (lo, hi) = v.bound(&local, r);
                 (self.scale * lo, self.scale * hi)
             }
         }

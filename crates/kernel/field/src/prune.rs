@@ -20,8 +20,8 @@ impl Interval {
 }
 
 impl Program {
-    /// Bounds φ over the cube of half side `half` about `centre`, each leaf's bounds widened by
-    /// `slack`, and writes to `out` the part of `tape` that can matter there.
+    /// Bounds φ no further than [`Self::around`] from the cube of half side `half` about `centre`,
+    /// each leaf's bounds widened by `slack`, and writes to `out` the part of `tape` that can matter there.
     ///
     /// An operand is left out where the other side of its operator wins at every point of the cube,
     /// so what remains has the very same values. Since nested solids are stretches of the same
@@ -39,7 +39,7 @@ impl Program {
         for &instr in tape {
             match instr {
                 Instr::Load(leaf) => {
-                    let (low, high) = self.leaves[leaf as usize].range(centre, half);
+                    let (low, high) = self.leaves[leaf as usize].range(centre, half, self.around());
                     let range = Interval {
                         low: low - slack,
                         high: high + slack,

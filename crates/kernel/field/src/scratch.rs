@@ -1,15 +1,19 @@
-use std::borrow::Cow;
-
 use glam::{Vec3, Vec4};
 
 use crate::program::Instr;
 use crate::shape::{NODES, Points};
 use crate::{Brick, BrickCoord, Program};
 
+/// Steps from the surface of a union within which φ is exact. Further away an operand that comes no
+/// nearer in a brick is not evaluated there, and φ may be that of the others.
+pub(crate) const EXACT: f32 = 3.0;
+
 /// Buffers of one thread.
 pub(crate) struct Scratch {
     points: Box<Points>,
     stack: Vec<[f32; NODES]>,
+    /// The leaves of a union with their bounds.
+    order: Vec<(u32, f32, f32)>,
 }
 
 impl Default for Scratch {
@@ -23,6 +27,7 @@ impl Default for Scratch {
                 radius: 0.0,
             }),
             stack: Vec::new(),
+            order: Vec::new(),
         }
     }
 }
@@ -81,46 +86,76 @@ impl Program {
 
     fn leaf_range(&self, leaf: u32, coord: BrickCoord) -> (f32, f32) {
         let centre = (coord.as_vec3() * 8.0 + 3.5) * self.step();
-        self.leaves[leaf as usize].range(centre, 3.5 * self.step())
+        self.leaves[leaf as usize].range(centre, 3.5 * self.step(), 0.0)
     }
 
-    /// The tape of a plain union with the leaf that goes lowest first, so that the others have the
-    /// least left to say; any other tape as it is. The order does not change a minimum.
-    fn ordered<'t>(&self, coord: BrickCoord, tape: &'t [Instr]) -> Cow<'t, [Instr]> {
-        let plain = |pair: &[Instr]| matches!(pair, [Instr::Load(_), Instr::Min]);
+    /// φ of a union of leaves at the nodes of a brick, in `scratch.stack[0]`: as
+    /// [`Self::brick_values`], the leaf that goes lowest first, so that the others have the least
+    /// left to say. The order does not change a minimum. `None` for any other tape.
+    fn union_values<'s>(
+        &self,
+        coord: BrickCoord,
+        tape: &[Instr],
+        slack: f32,
+        scratch: &'s mut Scratch,
+    ) -> Option<&'s mut [f32; NODES]> {
         let [Instr::Load(first), pairs @ ..] = tape else {
-            return Cow::Borrowed(tape);
+            return None;
         };
-        if pairs.is_empty() || !pairs.chunks(2).all(plain) {
-            return Cow::Borrowed(tape);
+        let Scratch {
+            points,
+            stack,
+            order,
+        } = scratch;
+        order.clear();
+        order.push((*first, 0.0, 0.0));
+        for pair in pairs.chunks(2) {
+            let [Instr::Load(leaf), Instr::Min] = pair else {
+                return None;
+            };
+            order.push((*leaf, 0.0, 0.0));
         }
-        let others = pairs.iter().filter_map(|i| match i {
-            Instr::Load(leaf) => Some(*leaf),
-            _ => None,
-        });
-        let all = std::iter::once(*first).chain(others);
-        let mut all: Vec<_> = all
-            .map(|leaf| (self.leaf_range(leaf, coord).1, leaf))
-            .collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut tape = Vec::with_capacity(2 * all.len());
-        for (i, (_, leaf)) in all.into_iter().enumerate() {
-            tape.push(Instr::Load(leaf));
+        if order.len() > 1 {
+            for (leaf, low, high) in order.iter_mut() {
+                (*low, *high) = self.leaf_range(*leaf, coord);
+            }
+            order.sort_by(|a, b| a.2.total_cmp(&b.2));
+        }
+        stack.resize(stack.len().max(2), [0.0; NODES]);
+        let [all, one, ..] = &mut stack[..] else {
+            return None;
+        };
+        let mut most = f32::INFINITY;
+        for (i, (leaf, low, _)) in order.iter().enumerate() {
+            let out = if i == 0 { &mut *all } else { &mut *one };
+            if i > 0 && low - slack >= most.min(EXACT * self.step()) {
+                continue;
+            }
+            self.leaves[*leaf as usize].brick(coord * 8, self.step(), points, out);
             if i > 0 {
-                tape.push(Instr::Min);
+                combine(Instr::Min, all, one);
+            }
+            if i + 1 < order.len() {
+                most = extremes(all).1;
             }
         }
-        Cow::Owned(tape)
+        Some(all)
     }
 
-    /// The greatest |∇φ| on a brick and a cell around it, if known.
+    /// How far from its nodes a zero of φ makes a brick hold values, metres: the differences along
+    /// the axes at the ends of a crossed edge reach two steps from the crossing at most.
+    pub(crate) fn around(&self) -> f32 {
+        2.0 * self.step()
+    }
+
+    /// The greatest |∇φ| on a brick and two steps around it, if known.
     fn slope(&self, coord: BrickCoord, tape: &[Instr]) -> Option<f32> {
         let centre = (coord.as_vec3() * 8.0 + 3.5) * self.step();
         let mut most = 1.0f32;
         for instr in tape {
             if let Instr::Load(leaf) = instr {
                 let leaf = &self.leaves[*leaf as usize];
-                most = most.max(leaf.slope(centre, 4.5 * self.step())?);
+                most = most.max(leaf.slope(centre, 3.5 * self.step(), self.around())?);
             }
         }
         Some(most)
@@ -135,15 +170,19 @@ impl Program {
         scratch: &mut Scratch,
     ) -> Option<Brick> {
         let step = self.step();
-        let tape = &*self.ordered(coord, tape);
-        let values = self.brick_values(coord, tape, slack, scratch)?;
+        let plain = self.union_values(coord, tape, slack, scratch).is_some();
+        let values = if plain {
+            &mut scratch.stack[0]
+        } else {
+            self.brick_values(coord, tape, slack, scratch)?
+        };
         let least = 1.0e-4 * step;
         for v in values.iter_mut() {
             *v = if v.abs() < least { least } else { *v };
         }
         let (min, max) = extremes(values);
-        // No node a cell away, √3 steps at most, can have the other sign if φ is not too steep.
-        let clear = min.max(-max) / (1.75 * step);
+        // Nothing so near can have the other sign if φ is not too steep.
+        let clear = min.max(-max) / (1.01 * self.around());
         if clear > 1.0 && self.slope(coord, tape).is_some_and(|slope| clear > slope) {
             return (max < 0.0).then_some(Brick::Inside);
         }

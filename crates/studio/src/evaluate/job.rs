@@ -1,3 +1,4 @@
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
@@ -96,24 +97,28 @@ impl Running {
 
     /// What another thread is to do.
     pub fn work(&self, recipe: Recipe, volumes: Arc<Volumes>) -> impl FnOnce() + Send + 'static {
-        let (step, cancelled, outcome) =
-            (self.key.step(), self.cancelled.clone(), self.outcome.clone());
+        let step = self.key.step();
+        let progress = self.progress.clone();
+        let (cancelled, outcome) = (self.cancelled.clone(), self.outcome.clone());
         move || {
-            let made = match Solid::make(
-                &recipe,
-                &Placement::IDENTITY,
-                step,
-                &*volumes,
-                &cancelled,
-            ) {
-                Ok(solid) => {
+            // A mesh that is baked on the way shows its progress and stops when asked to.
+            let meshes = volumes.watched(&progress);
+            let make = || Solid::make(&recipe, &Placement::IDENTITY, step, &meshes, &cancelled);
+            // Whoever waits for this is told, whatever happens in here.
+            let made = match catch_unwind(AssertUnwindSafe(make)) {
+                Ok(Ok(solid)) => {
                     let mut made = Made::from_mesh(Arc::new(solid.mesh()));
                     made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
                     made.extract_ms = solid.extract.as_secs_f64() * 1e3;
                     Some(Ok(Arc::new(made)))
                 }
-                Err(SolidError::Cancelled) => None,
-                Err(error) => Some(Err(error.to_string())),
+                Ok(Err(SolidError::Cancelled)) => None,
+                Ok(Err(_)) if progress.is_cancelled() => None,
+                Ok(Err(error)) => Some(Err(error.to_string())),
+                Err(_) => Some(Err(
+                    "A solid could not be made. Undo the last step, or choose another grid step."
+                        .to_owned(),
+                )),
             };
             // Set once, here only.
             let _ = outcome.set(made);

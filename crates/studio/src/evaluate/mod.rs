@@ -75,6 +75,8 @@ pub struct Evaluations {
     failed: HashMap<Key, String>,
     counted: Vec<Key>,
     updates: Vec<Update>,
+    /// An update left nothing, and nobody was told yet.
+    empty: bool,
     frame: u64,
 }
 
@@ -88,6 +90,7 @@ impl Evaluations {
             failed: HashMap::default(),
             counted: Vec::new(),
             updates: Vec::new(),
+            empty: false,
             frame: 0,
         }
     }
@@ -139,9 +142,15 @@ impl Evaluations {
     /// Counts the making of this solid as one update of a boolean sequence.
     pub fn count_update(&mut self, key: Key) {
         match self.made.get(&key) {
-            Some(made) => self.updates.push(made.update()),
+            Some(made) => self.count(&made),
             None => self.counted.push(key),
         }
+    }
+
+    fn count(&mut self, made: &Made) {
+        let update = made.update();
+        self.empty |= update.triangles == 0;
+        self.updates.push(update);
     }
 
     /// The updates so far.
@@ -180,6 +189,11 @@ impl Evaluations {
                 })
                 .collect(),
         };
+        if std::mem::take(&mut self.empty) {
+            notices.warn(
+                "Nothing is left of the operands. Undo, move them until they overlap, and update again.",
+            );
+        }
         for key in due {
             let Some(at) = self.running.iter().position(|r| r.key == key) else {
                 continue;
@@ -190,7 +204,7 @@ impl Evaluations {
                     delivered.push(key.job());
                     if let Some(at) = self.counted.iter().position(|k| *k == key) {
                         self.counted.remove(at);
-                        self.updates.push(made.update());
+                        self.count(&made);
                     }
                     for warning in &made.warnings {
                         notices.warn(warning.clone());
