@@ -65,7 +65,11 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
     };
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
         // The app's own lines are what a person should see.
-        filter: "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn".into(),
+        filter: format!(
+            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn{}",
+            // Without a window the command itself says what was noticed, once.
+            if stage == Stage::Window { "" } else { ",midair_studio::notice=off" }
+        ),
         ..default()
     });
     if stage != Stage::Window {

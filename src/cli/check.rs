@@ -6,8 +6,6 @@ use serde_json::{Value, json};
 
 use super::say;
 
-use super::say;
-
 pub(super) fn run(files: &[PathBuf], as_json: bool) -> Result<()> {
     let mut faulty = Vec::new();
     let mut all = Vec::new();

@@ -4,8 +4,6 @@ use midair_studio::project::Places;
 
 use super::say;
 
-use super::say;
-
 pub(super) fn run(json: bool) -> Result<()> {
     let library = Library::load(&Places::of_user()?.library);
     for warning in library.warnings() {

@@ -192,12 +192,3 @@ fn open(path: &std::path::Path) -> Result<(Document, MeshStore)> {
     }
     Ok((opened.document, opened.meshes))
 }
-
-/// Writes to standard output. Whoever reads may have seen enough (`| head`): that is no failure.
-fn say(text: &str) -> Result<()> {
-    use std::io::Write;
-    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other?),
-    }
-}

@@ -1,0 +1,11 @@
+//! Whole gestures through the hands, in the whole studio; and the training sessions, measured
+//! against an exact boolean.
+
+mod holding;
+mod operands;
+mod oracle;
+mod shapes;
+mod studio;
+mod training;
+mod trouble;
+mod undoing;
