@@ -68,8 +68,10 @@ impl Notices {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Notices>()
-        .add_systems(First, |time: Res<Time<Real>>, mut n: ResMut<Notices>| {
+    app.init_resource::<Notices>().add_systems(
+        First,
+        |time: Res<Time<Real>>, mut n: ResMut<Notices>| {
             n.bypass_change_detection().now = time.elapsed_secs_f64();
-        });
+        },
+    );
 }

@@ -389,6 +389,14 @@ fn commit_placement(
         return;
     };
     let scaled = stretched || object.placement.scale != placement.scale;
+    let before = object.placement;
+    let still = placement.translation.distance(before.translation) < 1e-5
+        && placement.rotation.angle_between(before.rotation) < 1e-3
+        && placement.scale == before.scale;
+    if still {
+        // A click, or the rounding of one: no step to undo.
+        return;
+    }
     let name = format!("{} {}", if scaled { "Scale" } else { "Move" }, object.name);
     let fresh = object.fresh;
     let mut edits = vec![Edit::SetPlacement { id, placement }];

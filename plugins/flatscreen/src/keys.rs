@@ -1,8 +1,10 @@
 //! Shortcuts that people know.
 
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
 use midair_studio::{command::Command, hands::Action, tools::Tools};
+
+use crate::panels::Screen;
+use crate::pointer::Pointer;
 
 /// What the keyboard calls an action; empty where there is no key.
 pub fn key_name(action: Action) -> &'static str {
@@ -27,11 +29,12 @@ pub fn key_name(action: Action) -> &'static str {
 
 pub(crate) fn commands(
     keys: Res<ButtonInput<KeyCode>>,
-    wants: Res<EguiWantsInput>,
+    screen: Res<Screen>,
+    pointer: Res<Pointer>,
     tools: Res<Tools>,
     mut commands: MessageWriter<Command>,
 ) {
-    if wants.wants_any_keyboard_input() {
+    if screen.is_typing() {
         return;
     }
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
@@ -51,6 +54,10 @@ pub(crate) fn commands(
         if keys.just_pressed(KeyCode::KeyS) {
             commands.write(Command::Save);
         }
+        return;
+    }
+    // Its keys mean axes then.
+    if pointer.stretching {
         return;
     }
     for (key, mark) in [

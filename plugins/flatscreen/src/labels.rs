@@ -5,10 +5,12 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     hands::{Hands, Side},
+    project::{Project, Shelf},
     show::{Cues, ObjectMap},
 };
 
 use crate::orbit::Orbit;
+use crate::panels::Screen;
 use crate::pointer::Pointer;
 
 /// Each operand carries its place and its sign, since colour alone is no cue for everyone.
@@ -18,10 +20,16 @@ pub(crate) fn objects(
     map: Res<ObjectMap>,
     transforms: Query<&GlobalTransform>,
     camera: Single<(&Camera, &GlobalTransform), With<Orbit>>,
+    screen: Res<Screen>,
 ) -> Result {
     let ctx = contexts.ctx_mut()?;
     let (camera, eye) = *camera;
-    let painter = ctx.layer_painter(egui::LayerId::background());
+    let Some(view) = screen.view() else {
+        return Ok(());
+    };
+    let painter = ctx
+        .layer_painter(egui::LayerId::background())
+        .with_clip_rect(view);
     for (&id, cue) in &cues.0 {
         let Some(label) = &cue.label else { continue };
         let Some(at) = map.get(id).and_then(|e| transforms.get(e).ok()) else {
@@ -47,29 +55,87 @@ pub(crate) fn objects(
             egui::Stroke::new(1.5, egui::Color32::from_rgb(r, g, b)),
             egui::StrokeKind::Inside,
         );
-        painter.galley(rect.center() - 0.5 * galley.size(), galley, egui::Color32::WHITE);
+        painter.galley(
+            rect.center() - 0.5 * galley.size(),
+            galley,
+            egui::Color32::WHITE,
+        );
     }
     Ok(())
 }
 
-/// A small ball at each hand, and a plumb line to the ground, so that its depth can be read.
-pub(crate) fn hands(mut gizmos: Gizmos, hands: Res<Hands>, pointer: Res<Pointer>) {
+/// An empty room says how one begins.
+pub(crate) fn empty(
+    mut contexts: EguiContexts,
+    project: Res<Project>,
+    shelf: Res<Shelf>,
+    screen: Res<Screen>,
+) -> Result {
+    let ctx = contexts.ctx_mut()?;
+    let Some(view) = screen
+        .view()
+        .filter(|_| project.document().objects().next().is_none())
+    else {
+        return Ok(());
+    };
+    let painter = ctx
+        .layer_painter(egui::LayerId::background())
+        .with_clip_rect(view);
+    let first = if shelf.open {
+        "Pick a shape to begin"
+    } else {
+        "Press L for the library"
+    };
+    let at = egui::pos2(view.center().x, view.top() + 0.3 * view.height());
+    for (text, size, down, colour) in [
+        (first, 24.0, 0.0, egui::Color32::from_gray(0xec)),
+        (
+            "or drop a mesh or a document here",
+            15.0,
+            32.0,
+            egui::Color32::from_gray(0xb8),
+        ),
+    ] {
+        painter.text(
+            at + egui::vec2(0.0, down),
+            egui::Align2::CENTER_CENTER,
+            text,
+            egui::FontId::proportional(size),
+            colour,
+        );
+    }
+    Ok(())
+}
+
+/// A small ball at each hand, and while it holds something a plumb line to the ground, so that its depth
+/// can be read.
+pub(crate) fn hands(
+    mut gizmos: Gizmos,
+    hands: Res<Hands>,
+    pointer: Res<Pointer>,
+    eye: Single<&Transform, With<Orbit>>,
+) {
     for side in Side::BOTH {
-        let tip = hands.get(side).pose.position;
         let leads = side == pointer.leading;
+        if !leads && !pointer.is_latched(side) && !pointer.stretching {
+            continue;
+        }
+        let tip = hands.get(side).pose.position;
         let colour = if leads {
             Color::srgb(0.62, 0.54, 0.95)
         } else {
-            Color::srgba(0.6, 0.6, 0.65, 0.5)
+            Color::srgb(0.75, 0.75, 0.80)
         };
-        gizmos.sphere(tip, if leads { 0.008 } else { 0.006 }, colour);
-        if tip.y.abs() > 0.01 {
-            gizmos.line(tip, tip.with_y(0.0), colour.with_alpha(0.35));
+        // The same size on screen wherever it is.
+        let size = 0.003 * tip.distance(eye.translation);
+        gizmos.sphere(tip, size, colour);
+        if pointer.holds() || pointer.is_latched(side) {
+            gizmos.line(tip, tip.with_y(0.0), colour.with_alpha(0.5));
+            gizmos.circle(
+                Isometry3d::new(tip.with_y(0.001), Quat::from_rotation_arc(Vec3::Z, Vec3::Y)),
+                4.0 * size,
+                colour.with_alpha(0.7),
+            );
         }
-        gizmos.circle(
-            Isometry3d::new(tip.with_y(0.001), Quat::from_rotation_arc(Vec3::Z, Vec3::Y)),
-            0.015,
-            colour.with_alpha(0.5),
-        );
     }
 }

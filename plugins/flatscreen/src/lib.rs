@@ -8,6 +8,7 @@ mod keys;
 mod labels;
 mod orbit;
 mod panels;
+mod place;
 mod pointer;
 mod stretch;
 
@@ -41,10 +42,13 @@ impl Plugin for FlatscreenPlugin {
                     .in_set(StudioSet::Gather)
                     .before(AdvanceHands),
             )
-            .add_systems(Update, (orbit::frame, labels::hands).in_set(StudioSet::Cue))
+            .add_systems(
+                Update,
+                (orbit::frame, labels::hands, panels::title, panels::drop).in_set(StudioSet::Cue),
+            )
             .add_systems(
                 EguiPrimaryContextPass,
-                (panels::style, panels::show, labels::objects).chain(),
+                (panels::style, panels::show, labels::objects, labels::empty).chain(),
             );
     }
 }

@@ -1,15 +1,20 @@
 //! The camera: around a point one looks at.
 
 use bevy::core_pipeline::tonemapping::Tonemapping;
-use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::light::ShadowFilteringMethod;
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
+use bevy::render::renderer::RenderAdapterInfo;
 use midair_studio::{
     project::{Project, Selection},
-    show::ObjectMap,
+    show::{ObjectMap, is_software},
 };
 
+use crate::panels::Screen;
 use crate::pointer::Pointer;
+
+/// Of the height of the window, in radians.
+const FIELD_OF_VIEW: f32 = 0.75;
 
 /// Where the camera is, as one turns it.
 #[derive(Component, Clone, Copy, Debug)]
@@ -47,79 +52,96 @@ impl Orbit {
     }
 }
 
-pub(crate) fn spawn(mut commands: Commands) {
+pub(crate) fn spawn(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>) {
     let orbit = Orbit::default();
+    // Without a graphics card a frame in time is worth more than a smooth edge.
+    let software = adapter.is_some_and(|a| is_software(&a));
+    let (samples, shadows) = if software {
+        (Msaa::Off, ShadowFilteringMethod::Hardware2x2)
+    } else {
+        (Msaa::Sample4, ShadowFilteringMethod::Gaussian)
+    };
     commands.spawn((
         Name::new("camera"),
         Camera3d::default(),
         Projection::Perspective(PerspectiveProjection {
-            fov: 0.75,
+            fov: FIELD_OF_VIEW,
             near: 0.02,
             ..default()
         }),
         Tonemapping::AcesFitted,
-        Msaa::Sample4,
+        samples,
+        shadows,
         orbit.transform(),
         orbit,
     ));
 }
 
 pub(crate) fn steer(
-    buttons: Res<ButtonInput<MouseButton>>,
-    keys: Res<ButtonInput<KeyCode>>,
-    motion: Res<AccumulatedMouseMotion>,
-    scroll: Res<AccumulatedMouseScroll>,
-    wants: Res<EguiWantsInput>,
+    (buttons, keys, scroll, mut moved): (
+        Res<ButtonInput<MouseButton>>,
+        Res<ButtonInput<KeyCode>>,
+        Res<AccumulatedMouseScroll>,
+        MessageReader<CursorMoved>,
+    ),
+    screen: Res<Screen>,
     pointer: Res<Pointer>,
     camera: Single<(&mut Orbit, &mut Transform)>,
     windows: Query<&Window>,
+    mut steering: Local<bool>,
 ) {
     let (mut orbit, mut transform) = camera.into_inner();
-    let height = windows.iter().next().map_or(720.0, |w| w.height().max(1.0));
-    if !wants.wants_any_pointer_input() {
-        let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
-        let alt = keys.any_pressed([KeyCode::AltLeft, KeyCode::AltRight]);
-        let orbiting = buttons.pressed(MouseButton::Middle)
-            || buttons.pressed(MouseButton::Right)
-            || alt && buttons.pressed(MouseButton::Left);
-        if orbiting && motion.delta != Vec2::ZERO {
-            if shift {
-                // What lies at the focus stays under the pointer.
-                let metres = 2.0 * orbit.distance * (0.5_f32 * 0.75).tan() / height;
-                let delta = transform.rotation
-                    * Vec3::new(-motion.delta.x, motion.delta.y, 0.0)
-                    * metres;
-                orbit.focus += delta;
-            } else {
-                // Half a turn across the height of the window.
-                let turn = std::f32::consts::PI / height;
-                orbit.yaw -= motion.delta.x * turn;
-                orbit.pitch = (orbit.pitch + motion.delta.y * turn).clamp(-1.5, 1.5);
-            }
-        }
-        // While something is held the wheel is the hand's.
-        if scroll.delta.y != 0.0 && !pointer.holds() {
-            let lines = match scroll.unit {
-                MouseScrollUnit::Line => scroll.delta.y,
-                MouseScrollUnit::Pixel => scroll.delta.y / 40.0,
-            };
-            orbit.distance = (orbit.distance * 0.88_f32.powf(lines)).clamp(0.05, 40.0);
+    let window = windows.iter().next();
+    let height = window.map_or(720.0, |w| w.height().max(1.0));
+    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
+    let panel = screen.covers(window.and_then(Window::cursor_position));
+    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    let alt = keys.any_pressed([KeyCode::AltLeft, KeyCode::AltRight]);
+    let around = [MouseButton::Middle, MouseButton::Right];
+    let began = buttons.any_just_pressed(around) || alt && buttons.just_pressed(MouseButton::Left);
+    // What began in the view goes on over the panels, and the other way about.
+    *steering = buttons.any_pressed(around.into_iter().chain([MouseButton::Left]))
+        && (*steering || began && !panel);
+    if *steering && travelled != Vec2::ZERO {
+        if shift {
+            // What lies at the focus stays under the pointer.
+            let metres = 2.0 * orbit.distance * (0.5 * FIELD_OF_VIEW).tan() / height;
+            let delta = transform.rotation * Vec3::new(-travelled.x, travelled.y, 0.0) * metres;
+            orbit.focus += delta;
+        } else {
+            // Half a turn across the height of the window.
+            let turn = std::f32::consts::PI / height;
+            orbit.yaw -= travelled.x * turn;
+            orbit.pitch = (orbit.pitch + travelled.y * turn).clamp(-1.5, 1.5);
         }
     }
+    // While something is held the wheel is the hand's.
+    if scroll.delta.y != 0.0 && !panel && !pointer.holds() {
+        orbit.distance = (orbit.distance * 0.88_f32.powf(lines(&scroll))).clamp(0.05, 40.0);
+    }
     transform.set_if_neq(orbit.transform());
+}
+
+/// How far the wheel was turned, whatever it counts in.
+pub(crate) fn lines(scroll: &AccumulatedMouseScroll) -> f32 {
+    match scroll.unit {
+        MouseScrollUnit::Line => scroll.delta.y,
+        MouseScrollUnit::Pixel => scroll.delta.y / 40.0,
+    }
 }
 
 /// F shows what is selected, or everything.
 pub(crate) fn frame(
     keys: Res<ButtonInput<KeyCode>>,
-    wants: Res<EguiWantsInput>,
+    screen: Res<Screen>,
     project: Res<Project>,
     selection: Res<Selection>,
     map: Res<ObjectMap>,
     transforms: Query<&Transform, Without<Orbit>>,
     mut orbit: Single<&mut Orbit>,
 ) {
-    if !keys.just_pressed(KeyCode::KeyF) || wants.wants_any_keyboard_input() {
+    let ctrl = keys.any_pressed([KeyCode::ControlLeft, KeyCode::ControlRight]);
+    if !keys.just_pressed(KeyCode::KeyF) || ctrl || screen.is_typing() {
         return;
     }
     let document = project.document();

@@ -1,15 +1,21 @@
 //! The pointer as a hand.
 
-use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll};
+use bevy::input::mouse::AccumulatedMouseScroll;
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
 use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
+    command::Command,
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
-    pick::{self, Proxy},
+    pick::{self, Proxy, Touch},
+    project::{Project, Shelf},
 };
 
-use crate::orbit::Orbit;
+use crate::orbit::{Orbit, lines};
+use crate::panels::Screen;
+use crate::place;
+
+/// A click may tremble this many pixels before it is a drag.
+const TREMBLE: f32 = 3.0;
 
 /// The leading hand, and the one that stays where it is.
 #[derive(Resource, Clone, Debug)]
@@ -19,25 +25,46 @@ pub struct Pointer {
     poses: [Pose; 2],
     /// Which hands hold on although no button is down.
     latched: [bool; 2],
-    /// Metres from the camera, along its view, at which a held thing is dragged.
-    depth: Option<f32>,
+    grip: Option<Grip>,
+    /// Whether the button went down in the view and is still down.
+    acting: bool,
     /// How the wand is turned against the camera.
     turn: Quat,
     over: bool,
+    /// Both hands pull at one thing.
+    pub(crate) stretching: bool,
+    /// Enter ended something and is not to finish as well until it is up again.
+    pub(crate) enter_spent: bool,
+    /// Components that were picked and not placed yet.
+    pub(crate) picked: Vec<String>,
+}
+
+/// What the leading hand drags.
+#[derive(Clone, Copy, Debug)]
+struct Grip {
+    /// Metres from the camera, along its view.
+    depth: f32,
+    /// Where the button went down, in pixels.
+    from: Vec2,
+    /// Whether it was dragged yet; a click that trembles moves nothing.
+    moved: bool,
+    /// Pixels that went into turning: the thing stays where it is meanwhile.
+    spent: Vec2,
 }
 
 impl Default for Pointer {
     fn default() -> Self {
         Self {
             leading: Side::Right,
-            poses: [
-                Pose::at(Vec3::new(-0.25, 0.2, 0.3)),
-                Pose::at(Vec3::new(0.25, 0.2, 0.3)),
-            ],
+            poses: [Pose::default(); 2],
             latched: [false; 2],
-            depth: None,
+            grip: None,
+            acting: false,
             turn: Quat::IDENTITY,
             over: false,
+            stretching: false,
+            enter_spent: false,
+            picked: Vec::new(),
         }
     }
 }
@@ -45,7 +72,7 @@ impl Default for Pointer {
 impl Pointer {
     /// Whether a hand holds something, so that the wheel is not the camera's.
     pub fn holds(&self) -> bool {
-        self.depth.is_some()
+        self.grip.is_some() || self.stretching
     }
 
     /// Whether the pointer is over a thing and not over a panel.
@@ -58,104 +85,175 @@ impl Pointer {
         self.poses[side as usize]
     }
 
-    pub(crate) fn release_all(&mut self) {
+    /// Whether a hand goes on holding what it held when the pointer left it.
+    pub fn is_latched(&self, side: Side) -> bool {
+        self.latched[side as usize]
+    }
+
+    fn let_go(&mut self) {
         self.latched = [false; 2];
-        self.depth = None;
+        self.grip = None;
+        self.acting = false;
     }
 }
 
 pub(crate) fn point(
-    buttons: Res<ButtonInput<MouseButton>>,
-    keys: Res<ButtonInput<KeyCode>>,
-    motion: Res<AccumulatedMouseMotion>,
-    scroll: Res<AccumulatedMouseScroll>,
-    wants: Res<EguiWantsInput>,
+    (buttons, keys, scroll, mut moved): (
+        Res<ButtonInput<MouseButton>>,
+        Res<ButtonInput<KeyCode>>,
+        Res<AccumulatedMouseScroll>,
+        MessageReader<CursorMoved>,
+    ),
+    screen: Res<Screen>,
     windows: Query<&Window>,
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     context: ReadRapierContext,
     proxies: Query<&Proxy>,
+    touch: Res<Touch>,
+    (project, shelf): (Res<Project>, Res<Shelf>),
     mut pointer: ResMut<Pointer>,
     mut input: ResMut<HandsInput>,
+    mut commands: MessageWriter<Command>,
 ) {
     let (camera, eye) = camera.into_inner();
-    let panel = wants.wants_any_pointer_input();
-    let typing = wants.wants_any_keyboard_input();
+    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
+    let cursor = windows.iter().find_map(Window::cursor_position);
+    let panel = screen.covers(cursor);
+    let typing = screen.is_typing();
     let alt = keys.any_pressed([KeyCode::AltLeft, KeyCode::AltRight]);
-    let left = buttons.pressed(MouseButton::Left) && !alt;
-    if keys.just_pressed(KeyCode::Tab) && !typing {
+    let ctrl = keys.any_pressed([
+        KeyCode::ControlLeft,
+        KeyCode::ControlRight,
+        KeyCode::SuperLeft,
+        KeyCode::SuperRight,
+    ]);
+    // A tap that is over within one frame is still a tap.
+    let down = buttons.pressed(MouseButton::Left) || buttons.just_pressed(MouseButton::Left);
+    let started = buttons.just_pressed(MouseButton::Left) && !alt && !panel && !pointer.stretching;
+    if keys.just_pressed(KeyCode::Tab) && !typing && !alt && !pointer.stretching {
         let side = pointer.leading;
         // What is held while one swaps stays held.
-        pointer.latched[side as usize] = left && pointer.depth.is_some();
+        pointer.latched[side as usize] = pointer.grip.take().is_some();
+        pointer.acting = false;
         pointer.leading = side.other();
-        pointer.depth = None;
     }
     let side = pointer.leading;
-    let at = eye_ray(&windows, camera, eye);
-    let mut down = ActionSet::NONE;
-    let turning = keys.pressed(KeyCode::KeyR) && !typing;
-    let started = buttons.just_pressed(MouseButton::Left) && !alt && !panel;
-    if let Some(ray) = at.filter(|_| !panel || pointer.depth.is_some()) {
-        let forward = eye.forward();
-        let mut pose = pointer.poses[side as usize];
-        if let (Some(depth), true) = (pointer.depth, left) {
-            if turning {
-                let turn = Quat::from_axis_angle(*eye.up(), motion.delta.x * 0.01)
-                    * Quat::from_axis_angle(*eye.right(), motion.delta.y * 0.01);
-                pointer.turn = (eye.rotation.inverse() * turn * eye.rotation) * pointer.turn;
-            } else {
-                let depth = (depth * 1.06_f32.powf(scroll.delta.y)).clamp(0.05, 40.0);
-                pointer.depth = Some(depth);
-                pose.position = ray.origin + *ray.direction * (depth / ray.direction.dot(*forward));
-            }
-        } else {
-            let hit = context
-                .single()
-                .ok()
-                .and_then(|c| pick::cast(&c, &proxies, ray.origin, ray.direction));
-            pointer.over = hit.is_some();
-            pointer.turn = Quat::IDENTITY;
-            pose.position = hit.map_or_else(|| on_ground(&ray, eye), |h| h.point);
-            pointer.depth = (started && hit.is_some())
-                .then(|| (pose.position - eye.translation).dot(*forward));
+    pointer.acting |= started;
+    // A latched hand that leads again lets go where it is.
+    let unlatched = std::mem::take(&mut pointer.latched[side as usize]);
+    let ray = cursor.and_then(|c| ray(camera, eye, c));
+    if let Some(mut grip) = pointer.grip {
+        // In the frame of the release too: it comes to rest where it was dragged to.
+        if keys.pressed(KeyCode::KeyR) && !typing {
+            let turn = Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
+                * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01);
+            pointer.turn =
+                (eye.rotation.inverse() * turn * eye.rotation * pointer.turn).normalize();
+            grip.spent += travelled;
+            grip.moved |= travelled != Vec2::ZERO;
+        } else if scroll.delta.y != 0.0 {
+            grip.depth = (grip.depth * 1.05_f32.powf(lines(&scroll))).clamp(0.05, 40.0);
+            grip.moved = true;
         }
-        pose.rotation = (eye.rotation * pointer.turn).normalize();
-        pointer.poses[side as usize] = pose;
+        if let Some(at) = cursor.map(|c| c - grip.spent) {
+            grip.moved |= at.distance(grip.from) > TREMBLE;
+            if grip.moved
+                && let Some(ray) = self::ray(camera, eye, at)
+            {
+                let along = ray.direction.dot(*eye.forward()).max(0.1);
+                pointer.poses[side as usize] = Pose {
+                    position: ray.get_point(grip.depth / along),
+                    rotation: (eye.rotation * pointer.turn).normalize(),
+                };
+            }
+        }
+        pointer.grip = Some(grip);
+    } else if !unlatched {
+        pointer.over = false;
+        pointer.turn = Quat::IDENTITY;
+        pointer.poses[side as usize] = match ray.filter(|_| !panel) {
+            Some(ray) => {
+                let hit = context
+                    .single()
+                    .ok()
+                    .and_then(|c| pick::cast(&c, &proxies, ray.origin, ray.direction));
+                let position = hit.map_or_else(|| on_ground(&ray, eye), |h| h.point);
+                // A small thing is touched from a fingertip's breadth away as well.
+                pointer.over = hit.is_some() || touch.get(side).is_some();
+                if started && pointer.over {
+                    pointer.grip = cursor.map(|from| Grip {
+                        depth: (position - eye.translation).dot(*eye.forward()),
+                        from,
+                        moved: false,
+                        spent: Vec2::ZERO,
+                    });
+                }
+                Pose {
+                    position,
+                    rotation: eye.rotation,
+                }
+            }
+            None => rest(eye, side),
+        };
     }
-    if left && (!panel || pointer.depth.is_some()) {
-        down.set(Action::Act, true);
-        down.set(Action::Grab, pointer.depth.is_some());
-    } else {
-        pointer.depth = None;
-        pointer.latched[side as usize] = false;
+    let other = side.other();
+    if !pointer.latched[other as usize] {
+        pointer.poses[other as usize] = rest(eye, other);
     }
-    if !typing {
-        keyboard(&keys, &mut down);
+    if !down {
+        pointer.acting = false;
+        pointer.grip = None;
+    }
+    // Where it was picked there is no room: it goes where one looks.
+    if pointer.grip.is_none() && !pointer.picked.is_empty() {
+        let component = pointer.picked.remove(0);
+        if let Some(found) = shelf.library.get(&component) {
+            let towards = ray_through(camera, eye, screen.centre());
+            let bounds = found.recipe.bounds();
+            let corners = (bounds.min, bounds.max);
+            if !bounds.is_empty() {
+                pointer.poses[side as usize] =
+                    Pose::at(place::free_spot(&project, corners, eye, towards));
+            }
+        }
+        commands.write(Command::Place { component, side });
+    }
+    let mut actions = ActionSet::NONE;
+    actions.set(Action::Act, pointer.acting);
+    actions.set(Action::Grab, pointer.grip.is_some());
+    if !keys.pressed(KeyCode::Enter) && !keys.pressed(KeyCode::NumpadEnter) {
+        pointer.enter_spent = false;
+    }
+    if !typing && !ctrl && !alt {
+        keyboard(&keys, &mut actions);
+        if pointer.enter_spent {
+            actions.set(Action::Finish, false);
+        }
     }
     for hand in Side::BOTH {
-        let pose = Some(pointer.poses[hand as usize]);
         let mut held = ActionSet::NONE;
         held.set(Action::Grab, pointer.latched[hand as usize]);
         *input.side(hand) = HandFrame {
-            pose,
-            down: if hand == side { down | held } else { held },
+            pose: Some(pointer.poses[hand as usize]),
+            down: if hand == side { actions | held } else { held },
             swipe: None,
         };
     }
+    let tapped = |key| !typing && !ctrl && !alt && (keys.pressed(key) || keys.just_pressed(key));
     // *Save* is the left hand's and *library* the right's: a key lends them the pointer's place.
-    if !typing && keys.pressed(KeyCode::KeyE) {
-        let pose = Some(pointer.poses[side as usize]);
+    if tapped(KeyCode::KeyE) && !pointer.stretching {
         let frame = input.side(Side::Left);
-        frame.pose = pose;
+        frame.pose = Some(pointer.poses[side as usize]);
         frame.down.set(Action::Save, true);
     }
-    if !typing && keys.pressed(KeyCode::KeyL) {
+    if tapped(KeyCode::KeyL) {
         input.side(Side::Right).down.set(Action::Library, true);
     }
-    if keys.just_pressed(KeyCode::Escape) {
+    if tapped(KeyCode::Escape) {
         for hand in Side::BOTH {
             input.side(hand).down.set(Action::Cancel, true);
         }
-        pointer.release_all();
+        pointer.let_go();
     }
     input.head = Some(Pose {
         position: eye.translation,
@@ -173,26 +271,44 @@ fn keyboard(keys: &ButtonInput<KeyCode>, down: &mut ActionSet) {
         (KeyCode::ArrowDown, Action::Down),
         (KeyCode::ArrowLeft, Action::Left),
     ] {
-        if keys.pressed(key) {
+        if keys.pressed(key) || keys.just_pressed(key) {
             down.set(action, true);
         }
     }
 }
 
-fn eye_ray(windows: &Query<&Window>, camera: &Camera, eye: &Transform) -> Option<Ray3d> {
-    let cursor = windows.iter().find_map(Window::cursor_position)?;
+/// An empty hand hangs behind the eyes, where it touches and hides nothing.
+fn rest(eye: &Transform, side: Side) -> Pose {
+    let right = match side {
+        Side::Left => -0.2,
+        Side::Right => 0.2,
+    };
+    Pose {
+        position: eye.transform_point(Vec3::new(right, -0.25, 0.2)),
+        rotation: eye.rotation,
+    }
+}
+
+fn ray(camera: &Camera, eye: &Transform, cursor: Vec2) -> Option<Ray3d> {
     camera
         .viewport_to_world(&GlobalTransform::from(*eye), cursor)
         .ok()
 }
 
-/// Where nothing is hit: on the ground if that is near, else in the plane through the point that the
-/// camera turns about.
+/// The ray through a point of the window; straight ahead where there is none yet.
+fn ray_through(camera: &Camera, eye: &Transform, at: Option<Vec2>) -> Ray3d {
+    at.and_then(|at| ray(camera, eye, at)).unwrap_or(Ray3d {
+        origin: eye.translation,
+        direction: eye.forward(),
+    })
+}
+
+/// Where nothing is hit: on the ground if that is near, else as far away as the origin.
 fn on_ground(ray: &Ray3d, eye: &Transform) -> Vec3 {
     let ground = InfinitePlane3d::new(Vec3::Y);
     let reach = ray
         .intersect_plane(Vec3::ZERO, ground)
-        .filter(|&d| d > 0.0 && d < 6.0)
-        .unwrap_or(eye.translation.length().clamp(0.5, 3.0));
+        .filter(|&d| d > 0.0 && d < 30.0)
+        .unwrap_or(eye.translation.length().clamp(0.5, 10.0));
     ray.get_point(reach)
 }

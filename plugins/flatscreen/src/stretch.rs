@@ -1,15 +1,14 @@
 //! S: both hands grip what the pointer touches, and moving the pointer moves them apart.
 
-use bevy::input::mouse::AccumulatedMouseMotion;
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
 use midair_studio::hands::{Action, HandsInput, Pose, Side};
 
 use crate::orbit::Orbit;
+use crate::panels::Screen;
 use crate::pointer::Pointer;
 
 /// Metres between the hands when they take hold: both within reach of the same spot.
-const APART: f32 = 0.02;
+const APART: f32 = 0.01;
 /// Pixels of movement that double the distance.
 const DOUBLE: f32 = 180.0;
 
@@ -26,64 +25,72 @@ pub(crate) fn stretch(
     mut stretching: Local<Option<Stretching>>,
     keys: Res<ButtonInput<KeyCode>>,
     buttons: Res<ButtonInput<MouseButton>>,
-    motion: Res<AccumulatedMouseMotion>,
-    wants: Res<EguiWantsInput>,
-    pointer: Res<Pointer>,
+    mut moved: MessageReader<CursorMoved>,
+    screen: Res<Screen>,
+    mut pointer: ResMut<Pointer>,
     eye: Single<&Transform, With<Orbit>>,
     mut input: ResMut<HandsInput>,
 ) {
+    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
     let ctrl = keys.any_pressed([KeyCode::ControlLeft, KeyCode::ControlRight]);
-    if stretching.is_none() {
-        let asked = keys.just_pressed(KeyCode::KeyS) && !ctrl && !wants.wants_any_keyboard_input();
-        if asked && pointer.is_over() {
-            *stretching = Some(Stretching {
+    let Some(now) = stretching.as_mut() else {
+        let asked = keys.just_pressed(KeyCode::KeyS) && !ctrl && !screen.is_typing();
+        if asked && pointer.is_over() && !pointer.holds() {
+            let begun = Stretching {
                 middle: pointer.pose(pointer.leading),
                 along: *eye.right(),
                 moved: 0.0,
                 swipe: None,
-            });
+            };
+            begun.write(&mut input, true);
+            *stretching = Some(begun);
+            pointer.stretching = true;
         }
-    } else if keys.just_pressed(KeyCode::KeyS)
-        || keys.just_pressed(KeyCode::Enter)
-        || keys.just_pressed(KeyCode::Escape)
-        || buttons.just_pressed(MouseButton::Left)
-    {
-        // The frame without a grip ends the gesture; Escape is in the frame as cancel.
-        *stretching = None;
-        for side in Side::BOTH {
-            let down = &mut input.side(side).down;
-            for action in [Action::Act, Action::Grab, Action::Finish] {
-                down.set(action, false);
-            }
-            down.set(Action::Grab, keys.just_pressed(KeyCode::Escape));
-        }
-        return;
-    }
-    let Some(now) = stretching.as_mut() else {
         return;
     };
-    now.moved += motion.delta.x - motion.delta.y;
-    for (key, swipe) in [
-        (KeyCode::KeyX, Vec2::Y),
-        (KeyCode::KeyY, Vec2::X),
-        (KeyCode::KeyZ, Vec2::NEG_Y),
-        (KeyCode::KeyA, Vec2::NEG_X),
+    let cancelled = keys.just_pressed(KeyCode::Escape);
+    let entered = keys.any_just_pressed([KeyCode::Enter, KeyCode::NumpadEnter]);
+    let done = cancelled
+        || entered
+        || keys.just_pressed(KeyCode::KeyS)
+        || buttons.just_pressed(MouseButton::Left)
+        // Undo takes the thing out of the hands.
+        || ctrl && keys.any_just_pressed([KeyCode::KeyZ, KeyCode::KeyY]);
+    now.moved += travelled.x - travelled.y;
+    for (names, swipe) in [
+        ([KeyCode::KeyX, KeyCode::ArrowUp], Vec2::Y),
+        ([KeyCode::KeyY, KeyCode::ArrowRight], Vec2::X),
+        ([KeyCode::KeyZ, KeyCode::ArrowDown], Vec2::NEG_Y),
+        ([KeyCode::KeyA, KeyCode::ArrowLeft], Vec2::NEG_X),
     ] {
-        if keys.just_pressed(key) {
+        if keys.any_just_pressed(names) && !ctrl {
             now.swipe = Some(swipe);
         }
     }
-    let apart = APART * (now.moved / DOUBLE).exp2();
-    for (side, sign) in [(Side::Left, -0.5), (Side::Right, 0.5)] {
-        let frame = input.side(side);
-        frame.pose = Some(Pose {
-            position: now.middle.position + now.along * (sign * apart),
-            ..now.middle
-        });
-        frame.down.set(Action::Act, false);
-        frame.down.set(Action::Grab, true);
-        if side == Side::Right {
-            frame.swipe = now.swipe;
+    // In the last frame too the hands are where they were pulled to. The frame without a grip ends the
+    // gesture; with Escape it is in the frame as cancel.
+    now.write(&mut input, !done || cancelled);
+    if done {
+        *stretching = None;
+        pointer.stretching = false;
+        pointer.enter_spent = entered;
+    }
+}
+
+impl Stretching {
+    /// Puts both hands where they pull. Everything but the grip and *cancel* is taken out of them.
+    fn write(&self, input: &mut HandsInput, grip: bool) {
+        let apart = APART * (self.moved / DOUBLE).exp2();
+        for (side, sign) in [(Side::Left, -0.5), (Side::Right, 0.5)] {
+            let frame = input.side(side);
+            frame.pose = Some(Pose {
+                position: self.middle.position + self.along * (sign * apart),
+                ..self.middle
+            });
+            let cancel = frame.down.has(Action::Cancel);
+            frame.down = [Action::Grab].into_iter().filter(|_| grip).collect();
+            frame.down.set(Action::Cancel, cancel);
+            frame.swipe = self.swipe.filter(|_| side == Side::Right);
         }
     }
 }

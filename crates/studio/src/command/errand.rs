@@ -185,24 +185,26 @@ impl Errands {
                 let (folders, progress) = (places.library.clone(), progress.clone());
                 (
                     format!("Importing {}", name(&path)),
-                    Box::new(
-                        move || match midair_library::import(&folders, &path, None, &progress) {
+                    Box::new(move || {
+                        match midair_library::import(&folders, &path, None, &progress) {
                             Ok(component) => Outcome::Imported(Box::new(component)),
                             Err(_) if progress.is_cancelled() => Outcome::Cancelled,
                             Err(error) => Outcome::Failed(error.to_string()),
-                        },
-                    ),
+                        }
+                    }),
                 )
             }
         };
         let (done, outcome) = channel();
         let finished = Arc::new(AtomicBool::new(false));
         let flag = finished.clone();
-        let spawned = std::thread::Builder::new().name("errand".into()).spawn(move || {
-            // Nobody waits any more when the program ends.
-            let _ = done.send(work());
-            flag.store(true, Ordering::Release);
-        });
+        let spawned = std::thread::Builder::new()
+            .name("errand".into())
+            .spawn(move || {
+                // Nobody waits any more when the program ends.
+                let _ = done.send(work());
+                flag.store(true, Ordering::Release);
+            });
         if spawned.is_ok() {
             self.running.push(Running {
                 what,
@@ -243,8 +245,10 @@ fn add(object: Object, project: &mut Project, notices: &mut Notices) {
 }
 
 fn name(path: &std::path::Path) -> String {
-    path.file_name()
-        .map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |n| n.to_string_lossy().into_owned(),
+    )
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -256,22 +260,28 @@ pub(super) fn plugin(app: &mut App) {
 fn finish(world: &mut World) {
     let volumes = world.resource::<Evaluations>().volumes.clone();
     let mut errands = world.resource_mut::<Errands>();
-    errands.bypass_change_detection().volumes.get_or_insert(volumes);
+    errands
+        .bypass_change_detection()
+        .volumes
+        .get_or_insert(volumes);
     let mut done = Vec::new();
-    errands.bypass_change_detection().running.retain_mut(|running| {
-        let outcome = match running.outcome.get_mut() {
-            Ok(receiver) => receiver.try_recv(),
-            Err(poisoned) => poisoned.into_inner().try_recv(),
-        };
-        match outcome {
-            Err(TryRecvError::Empty) => true,
-            Err(TryRecvError::Disconnected) => false,
-            Ok(outcome) => {
-                done.push((outcome, running.revision));
-                false
+    errands
+        .bypass_change_detection()
+        .running
+        .retain_mut(|running| {
+            let outcome = match running.outcome.get_mut() {
+                Ok(receiver) => receiver.try_recv(),
+                Err(poisoned) => poisoned.into_inner().try_recv(),
+            };
+            match outcome {
+                Err(TryRecvError::Empty) => true,
+                Err(TryRecvError::Disconnected) => false,
+                Ok(outcome) => {
+                    done.push((outcome, running.revision));
+                    false
+                }
             }
-        }
-    });
+        });
     let now = std::mem::take(&mut errands.bypass_change_detection().now);
     for (outcome, revision) in done {
         take_in(world, outcome, revision);
@@ -293,7 +303,11 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 world.resource_mut::<Notices>().warn(warning.clone());
             }
             let opened = *opened;
-            replace(world, History::new(opened.document, opened.meshes), Some(path));
+            replace(
+                world,
+                History::new(opened.document, opened.meshes),
+                Some(path),
+            );
         }
         Outcome::Saved(path, warnings) => {
             let mut project = world.resource_mut::<Project>();
@@ -327,7 +341,9 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
             });
         }
         Outcome::Failed(reason) => world.resource_mut::<Notices>().warn(reason),
-        Outcome::Cancelled => world.resource_mut::<Notices>().info("Given up; nothing was changed."),
+        Outcome::Cancelled => world
+            .resource_mut::<Notices>()
+            .info("Given up; nothing was changed."),
     }
 }
 
@@ -347,7 +363,9 @@ fn replace(world: &mut World, mut history: History, path: Option<PathBuf>) {
 fn restore(world: &mut World) {
     let mut found = world.resource_mut::<Recoverables>();
     if found.0.is_empty() {
-        world.resource_mut::<Notices>().info("No work was left behind.");
+        world
+            .resource_mut::<Notices>()
+            .info("No work was left behind.");
         return;
     }
     let first = found.0.remove(0);
@@ -358,7 +376,9 @@ fn restore(world: &mut World) {
             }
             world.resource_mut::<Project>().retire();
             install(world, recovered.history, recovered.origin);
-            world.resource_mut::<Notices>().info("Your work is back, its undo list included.");
+            world
+                .resource_mut::<Notices>()
+                .info("Your work is back, its undo list included.");
         }
         Err(error) => world.resource_mut::<Notices>().warn(error.to_string()),
     }

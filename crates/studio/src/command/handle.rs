@@ -14,10 +14,7 @@ use crate::tools::Tools;
 
 pub(super) fn plugin(app: &mut App) {
     // Buttons become commands before commands are carried out, in the same frame.
-    app.add_systems(
-        Update,
-        (buttons, handle).chain().in_set(StudioSet::Ask),
-    );
+    app.add_systems(Update, (buttons, handle).chain().in_set(StudioSet::Ask));
 }
 
 /// The buttons that mean the same in every mode. The menu is the right hand's.
@@ -63,9 +60,7 @@ fn handle(
             }
             Command::ToggleLibrary => shelf.open = !shelf.open,
             Command::Place { component, side } => {
-                if let Some(object) =
-                    placed(component, *side, &shelf, &hands, &mut notices)
-                {
+                if let Some(object) = placed(component, *side, &shelf, &hands, &mut notices) {
                     errands.place(object, &mut project, &places, &mut notices);
                 }
             }
@@ -83,7 +78,9 @@ fn handle(
                 project.commit(edit.describe().to_owned(), [edit.clone()], &mut notices);
             }
             Command::Save => {
-                let path = project.path().map_or_else(|| project.new_path(), Into::into);
+                let path = project
+                    .path()
+                    .map_or_else(|| project.new_path(), Into::into);
                 errands.start(Errand::Save(path), &project, &places);
             }
             Command::SaveAs(path) => {

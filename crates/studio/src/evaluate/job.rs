@@ -4,11 +4,11 @@ use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::prelude::{SharedShape, TriMesh as Trimesh, TriMeshFlags};
+use midair_field::Placement;
 use midair_field::Recipe;
 use midair_field::bake::Progress;
 use midair_library::Volumes;
 use midair_mesh::TriMesh;
-use midair_field::Placement;
 use midair_solid::{Solid, SolidError};
 
 use super::{Key, Update};

@@ -166,7 +166,9 @@ impl Evaluations {
     fn start(&mut self, recipe: Recipe, key: Key) {
         let running = Running::new(key, self.frame);
         let work = running.work(recipe, self.volumes.clone());
-        AsyncComputeTaskPool::get().spawn(async move { work() }).detach();
+        AsyncComputeTaskPool::get()
+            .spawn(async move { work() })
+            .detach();
         self.running.push(running);
     }
 

@@ -12,6 +12,8 @@ use crate::tools::Tools;
 pub struct Bar {
     path: String,
     asking: Asking,
+    /// The field has just appeared and takes the keyboard.
+    fresh: bool,
     /// The step while its slider is dragged; one command is sent when it is let go.
     step: Option<f32>,
 }
@@ -81,18 +83,32 @@ pub fn bar(
     });
     if !left_behind.0.is_empty() {
         ui.horizontal(|ui| {
-            ui.label("Work from an earlier run was not saved.");
-            if ui.button("Restore it").clicked() {
+            let (number, verb) = match left_behind.0.len() {
+                1 => (String::new(), "was"),
+                n => (format!(" ({n} documents)"), "were"),
+            };
+            let text = format!("Work from an earlier run{number} {verb} not saved.");
+            ui.label(egui::RichText::new(text).strong());
+            let restore = egui::Button::new("Restore it").fill(super::ACCENT.gamma_multiply(0.65));
+            if ui.add(restore).clicked() {
                 asks.push(Command::Restore);
             }
-            if ui.button("Leave it").clicked() {
+            if ui
+                .button("Throw it away")
+                .on_hover_text("For good: it will not be offered again")
+                .clicked()
+            {
                 asks.push(Command::Dismiss);
             }
         });
     }
     for (what, fraction) in errands.progress() {
         ui.horizontal(|ui| {
-            ui.add(egui::ProgressBar::new(fraction).text(what).desired_width(320.0));
+            ui.add(
+                egui::ProgressBar::new(fraction)
+                    .text(what)
+                    .desired_width(320.0),
+            );
             if ui.button("Cancel").clicked() {
                 asks.push(Command::CancelErrands);
             }
@@ -106,6 +122,7 @@ fn files(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command
     let mut choose = |ui: &mut Ui, text: &str, asking: Asking, ending: &str| {
         if ui.button(text).clicked() {
             state.asking = asking;
+            state.fresh = true;
             let folder = project.work_folder();
             state.path = if ending.is_empty() {
                 String::new()
@@ -135,7 +152,10 @@ fn ask_path(ui: &mut Ui, state: &mut Bar, asks: &mut Vec<Command>) {
         Asking::Nothing => return,
         Asking::Open => ("Open", "a document: *.midair"),
         Asking::SaveAs => ("Save", "a document: *.midair"),
-        Asking::Export => ("Export", "a mesh: .stl or .3mf for printing, .glb, .obj, .ply"),
+        Asking::Export => (
+            "Export",
+            "a mesh: .stl or .3mf for printing, .glb, .obj, .ply",
+        ),
         Asking::Import => ("Import", "a mesh: .glb, .obj, .stl, .ply"),
     };
     let mut done = false;
@@ -146,9 +166,13 @@ fn ask_path(ui: &mut Ui, state: &mut Bar, asks: &mut Vec<Command>) {
                 .hint_text(hint)
                 .desired_width(480.0),
         );
+        if std::mem::take(&mut state.fresh) {
+            field.request_focus();
+        }
+        done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Escape));
         let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if (ui.button(verb).clicked() || entered) && !state.path.trim().is_empty() {
-            let path = PathBuf::from(state.path.trim());
+            let path = from_home(state.path.trim());
             asks.push(match state.asking {
                 Asking::Open => Command::Open(path),
                 Asking::SaveAs => Command::SaveAs(path),
@@ -165,6 +189,14 @@ fn ask_path(ui: &mut Ui, state: &mut Bar, asks: &mut Vec<Command>) {
     });
     if done {
         state.asking = Asking::Nothing;
+    }
+}
+
+/// `~/` as shells read it.
+fn from_home(path: &str) -> PathBuf {
+    match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
+        (Some(rest), Some(home)) => PathBuf::from(home).join(rest),
+        _ => PathBuf::from(path),
     }
 }
 

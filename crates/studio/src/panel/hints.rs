@@ -1,4 +1,4 @@
-use bevy_egui::egui::{RichText, Ui};
+use bevy_egui::egui::{Color32, RichText, Ui};
 
 use crate::hands::Action;
 use crate::tools::{HintKey, Hints};
@@ -6,22 +6,30 @@ use crate::tools::{HintKey, Hints};
 /// What a way in calls an action: the key or button that does it.
 pub type KeyNames = fn(Action) -> &'static str;
 
-/// What each button does now, on one line.
-pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames) {
+/// What each button does now, on one line; `more` is what only this way in has, as key and meaning.
+pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames, more: &[(&str, &str)]) {
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(RichText::new(&hints.status).strong());
-        for hint in &hints.buttons {
+        let tools = hints.buttons.iter().map(|hint| {
             let key = match hint.action {
                 HintKey::Action(action) => names(action),
                 HintKey::Move => "move",
                 HintKey::Swipe => "swipe",
             };
+            (key, hint.does.as_str())
+        });
+        for (key, does) in tools.chain(more.iter().copied()) {
             if key.is_empty() {
                 continue;
             }
-            ui.separator();
-            ui.label(RichText::new(key).strong().monospace());
-            ui.label(&hint.does);
+            ui.add_space(10.0);
+            let cap = RichText::new(format!(" {key} "))
+                .color(Color32::from_gray(0xf2))
+                .monospace()
+                .background_color(Color32::from_rgb(0x3c, 0x40, 0x4b));
+            ui.label(cap);
+            ui.label(RichText::new(does).color(Color32::from_gray(0xc4)));
         }
     });
 }

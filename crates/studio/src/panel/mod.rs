@@ -13,7 +13,7 @@ mod style;
 pub use bar::{Bar, bar};
 pub use hints::{KeyNames, hints};
 pub use library::library;
-pub use notices::notices;
+pub use notices::{STAYS, notices};
 pub use objects::operands;
 pub use style::{ACCENT, apply_style};
 

@@ -3,7 +3,7 @@ use bevy_egui::egui::{Color32, RichText, Ui};
 use crate::notice::{Notices, Weight};
 
 /// Seconds for which a line stays: long enough to read it twice.
-const STAYS: f64 = 8.0;
+pub const STAYS: f64 = 8.0;
 
 /// The latest lines; says whether there are any.
 pub fn notices(ui: &mut Ui, notices: &Notices) -> bool {

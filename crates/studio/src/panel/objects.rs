@@ -20,9 +20,17 @@ pub fn operands(ui: &mut Ui, document: &Document) {
             };
             let [r, g, b, _] = tint.colour().to_srgba().to_u8_array();
             // Lightened, so that it reads on the dark panel.
-            let colour = Color32::from_rgb(r.saturating_add(40), g.saturating_add(40), b.saturating_add(40));
+            let colour = Color32::from_rgb(
+                r.saturating_add(40),
+                g.saturating_add(40),
+                b.saturating_add(40),
+            );
             if i > 0 {
-                ui.label(RichText::new(tint.sign().unwrap_or("")).color(colour).strong());
+                ui.label(
+                    RichText::new(tint.sign().unwrap_or(""))
+                        .color(colour)
+                        .strong(),
+                );
             }
             let name = document.object(id).map_or("?", |o| &o.name);
             ui.label(RichText::new(name).color(colour));

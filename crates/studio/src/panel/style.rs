@@ -7,6 +7,12 @@ pub const ACCENT: Color32 = Color32::from_rgb(0x8f, 0x7a, 0xe6);
 
 /// One spacing unit, one radius, one shadow, two weights: every panel looks the same.
 pub fn apply_style(ctx: &egui::Context) {
+    let mut fonts = egui::FontDefinitions::default();
+    if let Some(family) = fonts.families.get_mut(&FontFamily::Proportional) {
+        // The only bundled font that has ∪ and ∩.
+        family.push("Hack".to_owned());
+    }
+    ctx.set_fonts(fonts);
     let mut style = (*ctx.global_style()).clone();
     style.text_styles = [
         (TextStyle::Heading, 18.0),

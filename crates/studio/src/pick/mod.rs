@@ -105,8 +105,7 @@ fn touch(
                 distance: point.distance(tip),
             };
             let better = best.is_none_or(|(size, held)| {
-                (proxy.size, touched.distance, touched.object)
-                    < (size, held.distance, held.object)
+                (proxy.size, touched.distance, touched.object) < (size, held.distance, held.object)
             });
             if touched.distance <= reach && better {
                 best = Some((proxy.size, touched));
@@ -166,7 +165,8 @@ fn follow(
             continue;
         };
         // Hands pass through what is hidden and what is locked.
-        let passed = *visibility == Visibility::Hidden || project.document().is_locked(proxy.object);
+        let passed =
+            *visibility == Visibility::Hidden || project.document().is_locked(proxy.object);
         if passed != disabled {
             if passed {
                 commands.entity(entity).insert(ColliderDisabled);

@@ -45,7 +45,9 @@ pub(crate) fn begin(world: &mut World) {
                 .origin
                 .as_ref()
                 .and_then(|p| p.file_name())
-                .map_or("an unsaved document".into(), |n| n.to_string_lossy().into_owned());
+                .map_or("an unsaved document".into(), |n| {
+                    n.to_string_lossy().into_owned()
+                });
             notices.info(format!(
                 "Midair ended unexpectedly while you worked on {what} ({} steps). Restore it, or leave it aside.",
                 first.steps
@@ -76,7 +78,12 @@ pub(crate) fn attach(
     origin: Option<&std::path::Path>,
     notices: &mut Notices,
 ) {
-    match Journal::start(&places.journals, history.document(), history.meshes(), origin) {
+    match Journal::start(
+        &places.journals,
+        history.document(),
+        history.meshes(),
+        origin,
+    ) {
         Ok(journal) => history.attach(journal),
         Err(error) => notices.warn(error.to_string()),
     }

@@ -183,7 +183,13 @@ impl Project {
 fn free_path(folder: &Path, name: &str, ending: &str) -> PathBuf {
     let name: String = name
         .chars()
-        .map(|c| if c.is_alphanumeric() || " -_".contains(c) { c } else { '-' })
+        .map(|c| {
+            if c.is_alphanumeric() || " -_".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
         .collect();
     let first = folder.join(format!("{name}.{ending}"));
     if !first.exists() {

@@ -141,7 +141,14 @@ fn show(
                     .next();
                 let Some((key, made)) = best else {
                     if showing.made.is_none() && children.is_none() {
-                        stand_in(recipe, &mut evaluations, &drawn, entity, document, &mut commands);
+                        stand_in(
+                            recipe,
+                            &mut evaluations,
+                            &drawn,
+                            entity,
+                            document,
+                            &mut commands,
+                        );
                     }
                     continue;
                 };

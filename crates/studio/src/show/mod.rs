@@ -13,7 +13,7 @@ use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
 pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
-pub use room::{Room, RoomPlugin};
+pub use room::{Room, RoomPlugin, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

@@ -112,7 +112,9 @@ impl AddTool for App {
         let mut tools = self.world_mut().get_resource_or_init::<Tools>();
         tools.tools.retain(|t| t.id != tool.id);
         tools.tools.push(tool);
-        tools.tools.sort_by(|a, b| (a.order, &a.id).cmp(&(b.order, &b.id)));
+        tools
+            .tools
+            .sort_by(|a, b| (a.order, &a.id).cmp(&(b.order, &b.id)));
         tools.active = tools.tools.first().map(|t| t.id.clone());
         self
     }
