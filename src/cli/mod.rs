@@ -15,7 +15,6 @@ use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use midair_document::{Document, MeshStore};
 
-
 /// A studio for making 3D models with your hands in the air.
 #[derive(Parser, Debug)]
 #[command(version, about, args_conflicts_with_subcommands = true)]

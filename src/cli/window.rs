@@ -59,10 +59,7 @@ fn has_display() -> bool {
 }
 
 /// A document, or a mesh in an otherwise empty one.
-fn begin(
-    file: &Path,
-    places: &Places,
-) -> Result<(Document, MeshStore, std::path::PathBuf)> {
+fn begin(file: &Path, places: &Places) -> Result<(Document, MeshStore, std::path::PathBuf)> {
     if file.extension().is_some_and(|e| e == "midair") {
         let (document, meshes) = open(file)?;
         return Ok((document, meshes, file.to_owned()));
@@ -73,8 +70,7 @@ fn begin(
         None,
         &midair_field::bake::Progress::new(),
     )?;
-    let mut history =
-        midair_document::History::new(Document::new(), MeshStore::new());
+    let mut history = midair_document::History::new(Document::new(), MeshStore::new());
     history.add(Object::solid(component.name.clone(), component.placed()))?;
     let shelf = midair_library::MeshShelf::new(places.library.meshes());
     for hash in history.document().meshes() {

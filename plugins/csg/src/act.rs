@@ -109,12 +109,7 @@ impl Mark {
     }
 }
 
-fn apply_mark(
-    project: &mut Project,
-    notices: &mut Notices,
-    object: ObjectId,
-    mark: Mark,
-) -> bool {
+fn apply_mark(project: &mut Project, notices: &mut Notices, object: ObjectId, mark: Mark) -> bool {
     let document = project.document();
     if document.object(object).is_none_or(|o| o.recipe().is_none()) {
         notices.warn("Only closed solids can be operands.");
@@ -140,11 +135,7 @@ fn apply_mark(
 }
 
 /// A model that a hand touches and acts on is selected.
-pub(crate) fn select(
-    hands: Res<Hands>,
-    touch: Res<Touch>,
-    mut selection: ResMut<Selection>,
-) {
+pub(crate) fn select(hands: Res<Hands>, touch: Res<Touch>, mut selection: ResMut<Selection>) {
     for (side, hand) in hands.both() {
         if hand.pressed(Action::Act) {
             let touched: Vec<_> = touch.get(side).map(|t| t.object).into_iter().collect();

@@ -68,7 +68,9 @@ pub(crate) fn finish(
 ) -> bool {
     match Pending::of(project.document()) {
         Pending::Nothing => {
-            notices.info("Mark what to fuse first: open SceneOperate with the cross, then touch and mark.");
+            notices.info(
+                "Mark what to fuse first: open SceneOperate with the cross, then touch and mark.",
+            );
             false
         }
         Pending::Copy(id) => copy(project, notices, id),
@@ -105,14 +107,12 @@ fn copy(project: &mut Project, notices: &mut Notices, original: ObjectId) -> boo
 /// A copy stands beside its original, a tenth of its width away.
 fn aside(object: &Object) -> Vec3 {
     let bounds = object.recipe().map(|r| r.bounds());
-    let width = bounds
-        .filter(|b| !b.is_empty())
-        .map_or(0.1, |b| {
-            let half = 0.5 * b.size() * object.placement.scale.abs();
-            let turned = Mat3::from_quat(object.placement.rotation);
-            // The half width of the turned box along the world's x.
-            2.0 * (turned.row(0).abs().dot(half))
-        });
+    let width = bounds.filter(|b| !b.is_empty()).map_or(0.1, |b| {
+        let half = 0.5 * b.size() * object.placement.scale.abs();
+        let turned = Mat3::from_quat(object.placement.rotation);
+        // The half width of the turned box along the world's x.
+        2.0 * (turned.row(0).abs().dot(half))
+    });
     Vec3::X * width * 1.1
 }
 
@@ -128,13 +128,14 @@ fn fuse(
         return false;
     };
     let id = ObjectId(document.next_id());
-    let mut result = Object::new(
-        format!("Solid {}", id.0),
-        Kind::Solid(recipe.clone()),
-    )
-    .placed(Placement::at(origin));
+    let mut result = Object::new(format!("Solid {}", id.0), Kind::Solid(recipe.clone()))
+        .placed(Placement::at(origin));
     result.fresh = true;
-    if let Some(first) = document.pending().first().and_then(|(o, _)| document.object(*o)) {
+    if let Some(first) = document
+        .pending()
+        .first()
+        .and_then(|(o, _)| document.object(*o))
+    {
         result.layer = first.layer;
         result.group = first.group;
     }

@@ -18,8 +18,7 @@ pub struct Hold {
 impl Hold {
     /// Takes hold of what stands at `placement` with a hand at `hand`.
     pub fn new(hand: &Pose, placement: &Placement) -> Self {
-        let object =
-            Affine3A::from_rotation_translation(placement.rotation, placement.translation);
+        let object = Affine3A::from_rotation_translation(placement.rotation, placement.translation);
         Self {
             grip: hand.affine().inverse() * object,
             scale: placement.scale,
@@ -134,10 +133,8 @@ impl Stretch {
     /// The factors along the object's axes, each within [`RATIO`] of where it started.
     pub fn factor(&self, left: Vec3, right: Vec3) -> Vec3 {
         let ratio = left.distance(right) / self.apart;
-        (self.reached * self.axis.factor(ratio)).clamp(
-            Vec3::splat(*RATIO.start()),
-            Vec3::splat(*RATIO.end()),
-        )
+        (self.reached * self.axis.factor(ratio))
+            .clamp(Vec3::splat(*RATIO.start()), Vec3::splat(*RATIO.end()))
     }
 
     /// Where the object stands with the hands at `left` and `right`: scaled about its own centre,
@@ -191,7 +188,10 @@ mod tests {
         stretch.choose(Axis::X, l, r);
         stretch.choose(Axis::Y, l * 2.0, r * 2.0);
         let reached = stretch.factor(l * 3.0, r * 3.0);
-        assert!((reached - Vec3::new(2.0, 1.5, 1.0)).length() < 1e-5, "{reached}");
+        assert!(
+            (reached - Vec3::new(2.0, 1.5, 1.0)).length() < 1e-5,
+            "{reached}"
+        );
     }
 
     #[test]

@@ -44,7 +44,14 @@ impl Plugin for AssemblePlugin {
                 act::ask.in_set(StudioSet::Ask),
                 // Marks and deletes look at what is touched; grabs come last, so that a thing deleted
                 // in this frame is not taken in hand.
-                (act::select, act::operate, act::delete, act::finish, act::save, act::grab)
+                (
+                    act::select,
+                    act::operate,
+                    act::delete,
+                    act::finish,
+                    act::save,
+                    act::grab,
+                )
                     .chain()
                     .in_set(StudioSet::Act),
                 act::release.in_set(StudioSet::Commit),

@@ -27,13 +27,20 @@ impl Plugin for PebblesPlugin {
         })
         .add_systems(
             Update,
-            (drop_pebble.in_set(StudioSet::Act), hint.in_set(StudioSet::Cue))
+            (
+                drop_pebble.in_set(StudioSet::Act),
+                hint.in_set(StudioSet::Cue),
+            )
                 .run_if(tool_active(PEBBLES)),
         );
     }
 }
 
-fn drop_pebble(mut hands: ResMut<Hands>, mut project: ResMut<Project>, mut notices: ResMut<Notices>) {
+fn drop_pebble(
+    mut hands: ResMut<Hands>,
+    mut project: ResMut<Project>,
+    mut notices: ResMut<Notices>,
+) {
     for side in Side::BOTH {
         if !hands.get(side).pressed(Action::Act) {
             continue;
@@ -60,12 +67,26 @@ fn hint(mut hints: ResMut<Hints>) {
 
 /// An octahedron of the given radius in metres.
 fn pebble(radius: f32) -> TriMesh {
-    let positions = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let positions = [
+        Vec3::X,
+        Vec3::NEG_X,
+        Vec3::Y,
+        Vec3::NEG_Y,
+        Vec3::Z,
+        Vec3::NEG_Z,
+    ];
     let mut mesh = TriMesh {
         positions: positions.map(|p| p * radius).to_vec(),
         normals: Vec::new(),
         triangles: vec![
-            [0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5],
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
         ],
     };
     mesh.compute_normals();

@@ -35,7 +35,11 @@ fn a_document_opens_without_the_mode_that_made_it() {
     let mut with = app(Stage::Bare, places(home.path()), Begin::default());
     with.add_plugins(PebblesPlugin);
     let mut with = ready(with);
-    assert!(with.world_mut().resource_mut::<Tools>().activate(PEBBLES.as_str()));
+    assert!(
+        with.world_mut()
+            .resource_mut::<Tools>()
+            .activate(PEBBLES.as_str())
+    );
     for down in [false, true, true, false, true, false] {
         frame(&mut with, down);
     }
@@ -56,7 +60,11 @@ fn a_document_opens_without_the_mode_that_made_it() {
     }
     assert!(!without.world().resource::<Tools>().knows(PEBBLES.as_str()));
     let mut drawn = without.world_mut().query::<(&ObjectEntity, &Mesh3d)>();
-    assert_eq!(drawn.iter(without.world()).count(), 2, "drawn from the baked mesh");
+    assert_eq!(
+        drawn.iter(without.world()).count(),
+        2,
+        "drawn from the baked mesh"
+    );
     let project = without.world().resource::<Project>();
     let (_, pebble) = project.document().objects().next().unwrap();
     let Kind::Foreign { data, .. } = &pebble.kind else {
@@ -65,5 +73,8 @@ fn a_document_opens_without_the_mode_that_made_it() {
     assert_eq!(data, "(radius: 0.03)");
     let second = home.path().join("second.midair");
     save(&second, project.document(), project.meshes()).unwrap();
-    assert_eq!(std::fs::read(first).unwrap(), std::fs::read(second).unwrap());
+    assert_eq!(
+        std::fs::read(first).unwrap(),
+        std::fs::read(second).unwrap()
+    );
 }

@@ -45,8 +45,7 @@ impl Soup {
                     })? = true;
             }
         }
-        let mut places =
-            HashMap::with_capacity(n.min(self.triangles.len()));
+        let mut places = HashMap::with_capacity(n.min(self.triangles.len()));
         let mut renamed = vec![0_u32; n];
         let mut kept = Vec::new();
         for (v, &p) in self.positions.iter().enumerate().filter(|&(v, _)| used[v]) {
