@@ -1,7 +1,7 @@
 //! What panels, shortcuts and sessions ask for, by name.
 //!
 //! A panel is a function of what it shows to the commands it asks for; a session records the
-//! commands and not where the pointer was. They are carried out in [`StudioSet::Ask`]; reading and
+//! commands and not where the pointer was. They are carried out in [`StudioSet::Ask`](crate::StudioSet::Ask); reading and
 //! writing files goes on off the frame ([`Errands`]).
 
 mod errand;

@@ -1,7 +1,7 @@
 //! How a mode plugs in: an id, a name, a place in the frame.
 //!
 //! A mode is an ordinary plugin. It registers itself with [`AddTool::add_tool`] and adds its systems
-//! to the sets of [`StudioSet`](crate::StudioSet) with [`tool_active`] as their condition. Ids are
+//! to the sets of [`StudioSet`] with [`tool_active`] as their condition. Ids are
 //! saved in documents and never renamed.
 
 use std::borrow::Cow;
@@ -148,7 +148,7 @@ pub enum HintKey {
 }
 
 /// What every button does in this phase: the active tool writes it in
-/// [`StudioSet::Cue`](crate::StudioSet::Cue), ways in show it.
+/// [`StudioSet::Cue`], ways in show it.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Hints {
     /// One line on where one is in the work.
