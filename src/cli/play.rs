@@ -38,9 +38,7 @@ pub(super) fn run(args: Play) -> Result<()> {
         probe,
         ..PlayOptions::default()
     };
-    let played = play(&mut app, session, options);
-    // What was made up to a failure is still worth having: a report, a picture.
-    let report = played?;
+    let report = play(&mut app, session, options)?;
     for warning in &report.warnings {
         eprintln!("midair: {warning}");
     }

@@ -139,10 +139,7 @@ impl Errands {
             Errand::Save(path) => (
                 format!("Saving {}", name(&path)),
                 Box::new(move || {
-                    if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
-                        // Saving says what is wrong with the folder, if something is.
-                        let _ = std::fs::create_dir_all(folder);
-                    }
+                    make_folder(&path);
                     match save(&path, &document, &store) {
                         Ok(warnings) => Outcome::Saved(path, warnings),
                         Err(error) => Outcome::Failed(error.to_string()),
@@ -162,9 +159,7 @@ impl Errands {
                         let Some(volumes) = volumes else {
                             return Outcome::Cancelled;
                         };
-                        if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
-                            let _ = std::fs::create_dir_all(folder);
-                        }
+                        make_folder(&path);
                         let options = ExportOptions { step, unit, only };
                         match export(&path, &document, &store, &*volumes, &options, &cancelled) {
                             Ok(triangles) => Outcome::Exported(path, triangles),
@@ -215,6 +210,13 @@ impl Errands {
                 revision: project.history().revision(),
             });
         }
+    }
+}
+
+/// Makes the folder a file is to lie in. Writing the file says what is wrong with it, if something is.
+fn make_folder(file: &std::path::Path) {
+    if let Some(folder) = file.parent().filter(|f| !f.as_os_str().is_empty()) {
+        let _ = std::fs::create_dir_all(folder);
     }
 }
 
