@@ -19,6 +19,7 @@ use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
     project::{Begin, KeepPlugin, Places},
+    settings::KeepSettingsPlugin,
     show::RoomPlugin,
 };
 
@@ -91,7 +92,7 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         .add_plugins(MidairPlugins);
     match stage {
         Stage::Window => {
-            app.add_plugins((RoomPlugin, FlatscreenPlugin, KeepPlugin));
+            app.add_plugins((RoomPlugin, FlatscreenPlugin, KeepPlugin, KeepSettingsPlugin));
         }
         Stage::Picture => {
             app.add_plugins(RoomPlugin);

@@ -13,6 +13,8 @@ pub struct Folders {
     state: PathBuf,
     /// Where a person looks for what was saved.
     work: PathBuf,
+    /// What the user sets and may edit.
+    config: PathBuf,
 }
 
 /// Neither `MIDAIR_HOME` nor a home folder is known.
@@ -40,6 +42,7 @@ impl Folders {
                         .state_dir()
                         .unwrap_or_else(|| base.data_dir())
                         .join("midair"),
+                    config: base.config_dir().join("midair"),
                     work: base.home_dir().join("Documents").join("Midair"),
                 })
             }
@@ -53,6 +56,7 @@ impl Folders {
             cache: home.join("cache"),
             state: home.join("state"),
             work: home.join("work"),
+            config: home.join("config"),
         }
     }
 
@@ -74,6 +78,11 @@ impl Folders {
     /// What the user saves and exports without naming a place.
     pub fn work(&self) -> PathBuf {
         self.work.clone()
+    }
+
+    /// Settings and bindings.
+    pub fn config(&self) -> PathBuf {
+        self.config.clone()
     }
 
     /// Baked distance grids; may be deleted at any time.

@@ -11,6 +11,7 @@ pub mod notice;
 pub mod panel;
 pub mod pick;
 pub mod project;
+pub mod settings;
 pub mod show;
 pub mod tools;
 
@@ -56,6 +57,8 @@ impl Plugin for StudioPlugin {
                 .chain(),
         )
         .add_plugins((
+            settings::plugin,
+            panel::plugin,
             hands::plugin,
             tools::plugin,
             notice::plugin,

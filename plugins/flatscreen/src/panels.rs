@@ -1,15 +1,16 @@
 //! The panels on screen.
 
+use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
-    command::{Command, Errands},
+    command::Command,
     evaluate::Evaluations,
     hands::Action,
     notice::Notices,
-    panel::{self, Bar},
-    project::{Project, Recoverables, Shelf},
-    tools::{HintKey, Hints, Tools},
+    panel::{self, Bar, Dock, PanelInfo, Panels},
+    project::Project,
+    tools::{HintKey, Hints},
 };
 
 use crate::keys::key_name;
@@ -62,22 +63,47 @@ pub(crate) fn style(mut contexts: EguiContexts, mut screen: ResMut<Screen>) -> R
     Ok(())
 }
 
-pub(crate) fn show(
-    mut contexts: EguiContexts,
-    mut screen: ResMut<Screen>,
-    project: Res<Project>,
-    tools: Res<Tools>,
-    hints: Res<Hints>,
-    mut shelf: ResMut<Shelf>,
-    left_behind: Res<Recoverables>,
-    errands: Res<Errands>,
-    evaluations: Res<Evaluations>,
-    notices: Res<Notices>,
-    mut pointer: ResMut<Pointer>,
-    mut commands: MessageWriter<Command>,
-) -> Result {
-    let ctx = contexts.ctx_mut()?;
+/// Every open panel, where it stands; what is left in the middle is the view.
+pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'static, 'static>>) {
+    let Some(ctx) = contexts
+        .get_mut(world)
+        .ok()
+        .and_then(|mut c| c.ctx_mut().ok().cloned())
+    else {
+        return;
+    };
     let mut asks = Vec::new();
+    world.resource_scope(|world, mut screen: Mut<Screen>| {
+        world.resource_scope(|world, mut panels: Mut<Panels>| {
+            draw(
+                &ctx,
+                world,
+                screen.bypass_change_detection(),
+                panels.bypass_change_detection(),
+                &mut asks,
+            );
+        });
+    });
+    for ask in asks {
+        match ask {
+            // At the pointer is the panel itself: it is put where one looks, in the next frame.
+            Command::Place { component, .. } => {
+                world.resource_mut::<Pointer>().picked.push(component);
+            }
+            other => {
+                world.write_message(other);
+            }
+        }
+    }
+}
+
+fn draw(
+    ctx: &egui::Context,
+    world: &World,
+    screen: &mut Screen,
+    panels: &mut Panels,
+    asks: &mut Vec<Command>,
+) {
     let mut root = egui::Ui::new(
         ctx.clone(),
         "root".into(),
@@ -87,73 +113,53 @@ pub(crate) fn show(
     );
     egui::Panel::top("bar").show(&mut root, |ui| {
         ui.add_space(4.0);
-        asks.extend(panel::bar(
-            ui,
-            &mut screen.bar,
-            &project,
-            &tools,
-            &shelf,
-            &left_behind,
-            &errands,
-        ));
+        asks.extend(panel::bar(ui, &mut screen.bar, world, panels));
         ui.add_space(2.0);
     });
     egui::Panel::bottom("hints").show(&mut root, |ui| {
         ui.add_space(4.0);
-        panel::operands(ui, project.document());
-        let (hints, more) = with_keys(&hints, &pointer);
+        panel::operands(ui, world.resource::<Project>().document());
+        let (hints, more) = with_keys(world.resource(), world.resource());
         panel::hints(ui, &hints, key_name, &more);
         ui.add_space(4.0);
     });
-    if shelf.open {
-        // Away from where the leading hand works.
-        let mut query = shelf.query.clone();
-        egui::Panel::left("library")
-            .resizable(true)
-            .default_size(272.0)
-            .size_range(200.0..=480.0)
-            .show(&mut root, |ui| {
-                ui.add_space(8.0);
-                ui.horizontal(|ui| {
-                    ui.heading("Library");
-                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        ui.weak("L closes it");
-                    });
-                });
-                asks.extend(panel::library(ui, &shelf, &mut query, pointer.leading));
-            });
-        if shelf.query != query {
-            shelf.query = query;
+    for (dock, side) in [
+        (Dock::Left, egui::containers::panel::Side::Left),
+        (Dock::Right, egui::containers::panel::Side::Right),
+    ] {
+        let open = panels.open_in(dock);
+        if !open.is_empty() {
+            column(&mut root, side, &open, world, panels, asks);
         }
     }
     let view = root.available_rect_before_wrap();
     screen.view = Some(view);
-    let busy = evaluations.outstanding();
-    if notices.recent(panel::STAYS).next().is_some() || busy > 0 {
-        egui::Area::new("notices".into())
-            .order(egui::Order::Middle)
-            // In a corner of the view, above the hints.
-            .pivot(egui::Align2::RIGHT_BOTTOM)
-            .fixed_pos(view.right_bottom() - egui::vec2(16.0, 16.0))
-            .interactable(false)
-            .show(ctx, |ui| {
-                egui::Frame::window(ui.style())
-                    .inner_margin(12.0)
-                    .show(ui, |ui| {
-                        ui.set_max_width(360.0);
-                        panel::notices(ui, &notices);
-                        if busy > 0 {
-                            ui.horizontal(|ui| {
-                                ui.spinner();
-                                ui.label(format!(
-                                    "Making {busy} solid{}",
-                                    if busy == 1 { "" } else { "s" }
-                                ));
-                            });
-                        }
-                    });
-            });
+    for info in panels.open_in(Dock::Window) {
+        let mut open = true;
+        egui::Window::new(format!("{}  {}", info.icon, info.title))
+            .id(egui::Id::new(info.id))
+            .open(&mut open)
+            .collapsible(false)
+            .constrain_to(view)
+            .default_pos(view.center())
+            .pivot(egui::Align2::CENTER_CENTER)
+            .vscroll(true)
+            .show(ctx, |ui| fill(ui, &info, world, panels, asks));
+        if !open {
+            asks.push(close(&info));
+        }
     }
+    for info in panels.open_in(Dock::Modal) {
+        let shown = egui::Modal::new(egui::Id::new(info.id)).show(ctx, |ui| {
+            ui.heading(format!("{}  {}", info.icon, info.title));
+            ui.add_space(8.0);
+            fill(ui, &info, world, panels, asks);
+        });
+        if shown.should_close() {
+            asks.push(close(&info));
+        }
+    }
+    notices(ctx, view, world);
     // Tab is the hands': a button that it led to would take every shortcut.
     if !ctx.text_edit_focused()
         && let Some(focused) = ctx.memory(|m| m.focused())
@@ -166,16 +172,102 @@ pub(crate) fn show(
     screen.floating = at
         .and_then(|at| ctx.layer_id_at(at))
         .is_some_and(|layer| layer.order != egui::Order::Background);
-    for ask in asks {
-        match ask {
-            // At the pointer is the panel itself: it is put where one looks, in the next frame.
-            Command::Place { component, .. } => pointer.picked.push(component),
-            other => {
-                commands.write(other);
-            }
-        }
+}
+
+fn close(info: &PanelInfo) -> Command {
+    Command::Panel {
+        id: info.id.to_owned(),
+        open: false,
     }
-    Ok(())
+}
+
+/// The panels of one side, one above the other.
+fn column(
+    root: &mut egui::Ui,
+    side: egui::containers::panel::Side,
+    open: &[PanelInfo],
+    world: &World,
+    panels: &mut Panels,
+    asks: &mut Vec<Command>,
+) {
+    let (name, width) = match side {
+        egui::containers::panel::Side::Left => ("left", 272.0),
+        egui::containers::panel::Side::Right => ("right", 288.0),
+    };
+    let share = root.available_height() / open.len() as f32 - 48.0;
+    let panel = match side {
+        egui::containers::panel::Side::Left => egui::Panel::left(name),
+        egui::containers::panel::Side::Right => egui::Panel::right(name),
+    };
+    panel
+        .resizable(true)
+        .default_size(width)
+        .size_range(200.0..=480.0)
+        .show(root, |ui| {
+            for (i, info) in open.iter().enumerate() {
+                if i > 0 {
+                    ui.separator();
+                }
+                ui.add_space(8.0);
+                ui.horizontal(|ui| {
+                    ui.heading(format!("{}  {}", info.icon, info.title));
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        let button = egui::Button::new(panel::icon::X).frame(false);
+                        if ui.add(button).on_hover_text("Close").clicked() {
+                            asks.push(close(info));
+                        }
+                    });
+                });
+                ui.push_id(info.id, |ui| {
+                    ui.set_max_height(share.max(80.0));
+                    fill(ui, info, world, panels, asks);
+                });
+            }
+        });
+}
+
+fn fill(
+    ui: &mut egui::Ui,
+    info: &PanelInfo,
+    world: &World,
+    panels: &mut Panels,
+    asks: &mut Vec<Command>,
+) {
+    if let Some(mut panel) = panels.take(info.id) {
+        panel.show(ui, world, asks);
+        panels.put_back(info.id, panel);
+    }
+}
+
+/// What the studio has to say, in a corner of the view above the hints.
+fn notices(ctx: &egui::Context, view: egui::Rect, world: &World) {
+    let notices = world.resource::<Notices>();
+    let busy = world.resource::<Evaluations>().outstanding();
+    if notices.recent(panel::STAYS).next().is_none() && busy == 0 {
+        return;
+    }
+    egui::Area::new("notices".into())
+        .order(egui::Order::Middle)
+        .pivot(egui::Align2::RIGHT_BOTTOM)
+        .fixed_pos(view.right_bottom() - egui::vec2(16.0, 16.0))
+        .interactable(false)
+        .show(ctx, |ui| {
+            egui::Frame::window(ui.style())
+                .inner_margin(12.0)
+                .show(ui, |ui| {
+                    ui.set_max_width(360.0);
+                    panel::notices(ui, notices);
+                    if busy > 0 {
+                        ui.horizontal(|ui| {
+                            ui.spinner();
+                            ui.label(format!(
+                                "Making {busy} solid{}",
+                                if busy == 1 { "" } else { "s" }
+                            ));
+                        });
+                    }
+                });
+        });
 }
 
 /// The tool's hints, with what only mouse and keyboard have.

@@ -6,6 +6,7 @@ use midair_studio::{
     command::Command,
     hands::{AdvanceHands, HandsInput},
     notice::Notices,
+    settings::Settings,
 };
 
 use crate::{Arrivals, Frame, Player, RecordError, Recording};
@@ -18,6 +19,8 @@ pub struct Recorder {
     /// The frame that is being recorded, and what was asked for in it.
     now: Option<(Frame, Vec<Command>)>,
     seen: MessageCursor<Command>,
+    /// What makes the usual settings into those at the start.
+    settings: Vec<Command>,
     said: bool,
 }
 
@@ -46,9 +49,16 @@ impl Plugin for RecorderPlugin {
             recording,
             now: None,
             seen: MessageCursor::default(),
+            settings: Vec::new(),
             said: false,
         })
         .init_resource::<Arrivals>()
+        .add_systems(
+            PostStartup,
+            |settings: Res<Settings>, mut recorder: ResMut<Recorder>| {
+                recorder.settings = settings.shaping();
+            },
+        )
         .add_message::<Command>()
         .add_systems(
             Update,
@@ -73,7 +83,10 @@ fn gather(
     asked: Res<Messages<Command>>,
 ) {
     let recorder = &mut *recorder;
-    let commands = recorder.seen.read(&asked).cloned().collect();
+    let asked = recorder.seen.read(&asked).cloned();
+    // A session begins with the usual settings: what a person has set otherwise comes first.
+    let first = std::mem::take(&mut recorder.settings);
+    let commands = first.into_iter().chain(asked).collect();
     let frame = Frame {
         dt: time.delta(),
         input: *input,

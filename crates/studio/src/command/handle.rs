@@ -8,7 +8,9 @@ use super::{Command, errand::Errand, errand::Errands};
 use crate::StudioSet;
 use crate::hands::{Action, Hands, Side};
 use crate::notice::Notices;
+use crate::panel::Panels;
 use crate::project::{Places, Project, Selection, Shelf};
+use crate::settings::Settings;
 use crate::show::Drafts;
 use crate::tools::Tools;
 
@@ -39,6 +41,7 @@ fn handle(
     mut drafts: ResMut<Drafts>,
     mut selection: ResMut<Selection>,
     mut errands: ResMut<Errands>,
+    (mut settings, mut panels): (ResMut<Settings>, ResMut<Panels>),
     places: Res<Places>,
     mut notices: ResMut<Notices>,
 ) {
@@ -58,7 +61,27 @@ fn handle(
                     None => notices.info("Nothing to redo."),
                 }
             }
-            Command::ToggleLibrary => shelf.open = !shelf.open,
+            Command::ToggleLibrary => {
+                shelf.open = !shelf.open;
+                panels.set_open("library", shelf.open);
+            }
+            Command::Panel { id, open } => {
+                if id == "library" {
+                    shelf.open = *open;
+                }
+                if !panels.set_open(id, *open) {
+                    notices.warn(format!("There is no panel \"{id}\"."));
+                }
+            }
+            Command::Set { key, value } => {
+                let mut next = settings.clone();
+                match next.set(key, value) {
+                    Ok(()) => {
+                        settings.set_if_neq(next);
+                    }
+                    Err(fault) => notices.warn(fault.to_string()),
+                }
+            }
             Command::Place { component, side } => {
                 if let Some(object) = placed(component, *side, &shelf, &hands, &mut notices) {
                     errands.place(object, &mut project, &places, &mut notices);

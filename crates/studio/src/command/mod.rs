@@ -72,6 +72,20 @@ pub enum Command {
     Restore,
     /// Leaves that work aside for good.
     Dismiss,
+    /// Changes one of the [`Settings`](crate::settings::Settings) by its dotted name.
+    Set {
+        /// For instance `look.room`.
+        key: String,
+        /// As JSON: `true`, `0.05`, `"Day"`.
+        value: String,
+    },
+    /// Shows or hides a panel.
+    Panel {
+        /// Its id.
+        id: String,
+        /// Whether it is to be seen.
+        open: bool,
+    },
     /// Something only one tool understands: its options, its panel's buttons.
     Tool {
         /// Which tool.

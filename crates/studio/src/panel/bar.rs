@@ -1,10 +1,12 @@
 use std::path::PathBuf;
 
+use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
+use super::Panels;
 use crate::command::{Command, Errands};
-use crate::project::{Project, Recoverables, Shelf};
+use crate::project::{Project, Recoverables};
 use crate::tools::Tools;
 
 /// What the bar remembers between frames: the fields that are being typed into.
@@ -29,15 +31,11 @@ enum Asking {
 }
 
 /// Modes, files, undo, the step of the grid.
-pub fn bar(
-    ui: &mut Ui,
-    state: &mut Bar,
-    project: &Project,
-    tools: &Tools,
-    shelf: &Shelf,
-    left_behind: &Recoverables,
-    errands: &Errands,
-) -> Vec<Command> {
+pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<Command> {
+    let project = world.resource::<Project>();
+    let tools = world.resource::<Tools>();
+    let left_behind = world.resource::<Recoverables>();
+    let errands = world.resource::<Errands>();
     let mut asks = Vec::new();
     ui.horizontal_wrapped(|ui| {
         ui.menu_button("File", |ui| files(ui, state, project, &mut asks));
@@ -68,12 +66,17 @@ pub fn bar(
             }
         }
         ui.separator();
-        if ui
-            .selectable_label(shelf.open, "Library")
-            .on_hover_text("L")
-            .clicked()
-        {
-            asks.push(Command::ToggleLibrary);
+        for info in panels.all().iter().filter(|i| i.in_bar) {
+            let open = panels.is_open(info.id);
+            if ui
+                .selectable_label(open, format!("{} {}", info.icon, info.title))
+                .clicked()
+            {
+                asks.push(Command::Panel {
+                    id: info.id.to_owned(),
+                    open: !open,
+                });
+            }
         }
         ui.separator();
         step(ui, state, project, &mut asks);

@@ -7,6 +7,21 @@ use crate::project::Shelf;
 /// A column of the shelf is at least this wide, in points.
 const COLUMN: f32 = 112.0;
 
+/// The shelf as a panel.
+#[derive(Default)]
+pub(super) struct LibraryPanel {
+    /// What is typed into the search field.
+    query: String,
+}
+
+impl super::Panel for LibraryPanel {
+    fn show(&mut self, ui: &mut Ui, world: &bevy::prelude::World, asks: &mut Vec<Command>) {
+        // At which hand is the way in's to say.
+        let shelf = world.resource::<Shelf>();
+        asks.extend(library(ui, shelf, &mut self.query, Side::Right));
+    }
+}
+
 /// The library: search, then every component by category. Picking one places it at `side`.
 ///
 /// `query` is the search text, edited in place.

@@ -8,6 +8,7 @@ mod hints;
 mod library;
 mod notices;
 mod objects;
+mod registry;
 mod style;
 
 pub use bar::{Bar, bar};
@@ -15,6 +16,25 @@ pub use hints::{KeyNames, hints};
 pub use library::library;
 pub use notices::{STAYS, notices};
 pub use objects::operands;
+pub use registry::{AddPanel, Dock, Panel, PanelInfo, Panels};
 pub use style::{ACCENT, apply_style};
 
 pub use bevy_egui::egui;
+/// The one set of icons that every panel uses.
+pub use egui_phosphor::regular as icon;
+
+pub(crate) fn plugin(app: &mut bevy::prelude::App) {
+    use bevy::prelude::*;
+    app.init_resource::<Panels>().add_panel(
+        PanelInfo {
+            id: "library",
+            title: "Library",
+            icon: icon::BOOKS,
+            dock: Dock::Left,
+            order: 0,
+            open: false,
+            in_bar: true,
+        },
+        library::LibraryPanel::default(),
+    );
+}

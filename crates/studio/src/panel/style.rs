@@ -12,6 +12,7 @@ pub fn apply_style(ctx: &egui::Context) {
         // The only bundled font that has ∪ and ∩.
         family.push("Hack".to_owned());
     }
+    egui_phosphor::add_to_fonts(&mut fonts, egui_phosphor::Variant::Regular);
     ctx.set_fonts(fonts);
     let mut style = (*ctx.global_style()).clone();
     style.text_styles = [

@@ -51,6 +51,11 @@ impl Places {
         Self::in_folders(Folders::below(home))
     }
 
+    /// What the person has set.
+    pub fn settings(&self) -> PathBuf {
+        self.library.config().join("settings.ron")
+    }
+
     fn in_folders(library: Folders) -> Self {
         let state = library.state();
         Self {

@@ -1,0 +1,35 @@
+use serde::{Deserialize, Serialize};
+
+/// The room that one works in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RoomKind {
+    /// Calm and dark.
+    #[default]
+    Dusk,
+    /// Light.
+    Day,
+    /// White, as in ScaffoldSketch.
+    Paper,
+}
+
+/// The room and how it is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LookSettings {
+    /// Which room.
+    pub room: RoomKind,
+    /// Whether edges of triangles are drawn.
+    pub wireframe: bool,
+    /// Panels and text, as a multiple of their usual size.
+    pub interface_scale: f32,
+}
+
+impl Default for LookSettings {
+    fn default() -> Self {
+        Self {
+            room: RoomKind::default(),
+            wireframe: false,
+            interface_scale: 1.0,
+        }
+    }
+}

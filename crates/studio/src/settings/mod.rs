@@ -1,0 +1,31 @@
+//! What a person sets once and finds again: look, snaps, hands, units, comfort.
+//!
+//! [`Settings`] is a plain value; each part belongs to the room it is about. Only
+//! [`Command::Set`](crate::command::Command::Set) changes it, so that a session which changes a setting plays back. A
+//! session begins with the defaults, a person with what is kept in `settings.ron`.
+
+mod keep;
+mod look;
+mod patch;
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+pub use keep::KeepSettingsPlugin;
+pub use look::{LookSettings, RoomKind};
+pub use patch::SettingFault;
+
+/// Everything a person can set. A field that a file lacks has its default.
+#[derive(Resource, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// The room and how it is drawn.
+    pub look: LookSettings,
+}
+
+/// The parts that change what hands make: a recording begins with those that are not the default.
+const SHAPING: &[&str] = &["snap", "hands", "symmetry", "units"];
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Settings>();
+}
