@@ -124,8 +124,8 @@ fn draw(
         ui.add_space(4.0);
     });
     for (dock, side) in [
-        (Dock::Left, egui::containers::panel::Side::Left),
-        (Dock::Right, egui::containers::panel::Side::Right),
+        (Dock::Left, egui::Panel::left("left").default_size(272.0)),
+        (Dock::Right, egui::Panel::right("right").default_size(288.0)),
     ] {
         let open = panels.open_in(dock);
         if !open.is_empty() {
@@ -184,24 +184,14 @@ fn close(info: &PanelInfo) -> Command {
 /// The panels of one side, one above the other.
 fn column(
     root: &mut egui::Ui,
-    side: egui::containers::panel::Side,
+    side: egui::Panel,
     open: &[PanelInfo],
     world: &World,
     panels: &mut Panels,
     asks: &mut Vec<Command>,
 ) {
-    let (name, width) = match side {
-        egui::containers::panel::Side::Left => ("left", 272.0),
-        egui::containers::panel::Side::Right => ("right", 288.0),
-    };
     let share = root.available_height() / open.len() as f32 - 48.0;
-    let panel = match side {
-        egui::containers::panel::Side::Left => egui::Panel::left(name),
-        egui::containers::panel::Side::Right => egui::Panel::right(name),
-    };
-    panel
-        .resizable(true)
-        .default_size(width)
+    side.resizable(true)
         .size_range(200.0..=480.0)
         .show(root, |ui| {
             for (i, info) in open.iter().enumerate() {

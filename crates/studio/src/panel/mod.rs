@@ -24,7 +24,6 @@ pub use bevy_egui::egui;
 pub use egui_phosphor::regular as icon;
 
 pub(crate) fn plugin(app: &mut bevy::prelude::App) {
-    use bevy::prelude::*;
     app.init_resource::<Panels>().add_panel(
         PanelInfo {
             id: "library",
