@@ -10,6 +10,7 @@ use midair_studio::{
     notice::Notices,
     pick::Touch,
     project::{Project, Selection},
+    settings::Settings,
     show::Drafts,
 };
 
@@ -245,30 +246,34 @@ pub(crate) fn finish(
     hands.pulse(side, haptic(done));
 }
 
-/// The left hand saves what it touches as a mesh file.
+/// The hand that does not lead saves what it touches as a mesh file.
 pub(crate) fn save(
     mut hands: ResMut<Hands>,
     touch: Res<Touch>,
-    options: Res<Options>,
+    (options, settings): (Res<Options>, Res<Settings>),
     project: Res<Project>,
     mut commands: MessageWriter<Command>,
     mut notices: ResMut<Notices>,
 ) {
-    if !hands.get(Side::Left).pressed(Action::Save) {
+    let side = settings.hands.off();
+    if !hands.get(side).pressed(Action::Save) {
         return;
     }
-    match touch.get(Side::Left) {
+    match touch.get(side) {
         Some(touched) => {
             let path = project.export_path(touched.object, &options.save_as);
             commands.write(Command::ExportObject {
                 object: touched.object,
                 path,
             });
-            hands.pulse(Side::Left, Haptic::Done);
+            hands.pulse(side, Haptic::Done);
         }
         None => {
-            notices.info("Touch what to save with the left hand, then press save.");
-            hands.pulse(Side::Left, Haptic::Refused);
+            let hand = if side == Side::Left { "left" } else { "right" };
+            notices.info(format!(
+                "Touch what to save with the {hand} hand, then press save."
+            ));
+            hands.pulse(side, Haptic::Refused);
         }
     }
 }

@@ -1,72 +1,90 @@
-//! Shortcuts that people know.
+//! Shortcuts: what keys and buttons ask of the studio as a whole.
 
 use bevy::prelude::*;
-use midair_studio::{command::Command, hands::Action, tools::Tools};
+use midair_studio::{command::Command, hands::Action, panel::Panels, tools::Tools};
 
-use crate::panels::Screen;
-use crate::pointer::Pointer;
+use crate::bindings::{Bindings, Control, Controls, Device};
 
-/// What the keyboard calls an action; empty where there is no key.
-pub fn key_name(action: Action) -> &'static str {
-    match action {
-        Action::Act => "click",
-        Action::Grab => "drag",
-        Action::Finish => "Enter",
-        Action::Cancel => "Esc",
-        Action::Undo => "Ctrl+Z",
-        Action::Redo => "Ctrl+Shift+Z",
-        Action::Library => "L",
-        Action::Save => "E",
-        Action::Delete => "Del",
-        Action::Up => "↑",
-        Action::Right => "→",
-        Action::Down => "↓",
-        Action::Left => "←",
-        Action::Modes => "1–4",
-        Action::Centre | Action::Menu => "",
+/// What the device that was used last calls an action; empty where it has nothing for it.
+pub fn key_name(action: Action, bindings: &Bindings, device: Device) -> String {
+    let own = control(action).map_or(String::new(), |c| bindings.label(c, device));
+    match (action, device) {
+        // The pointer grabs with the button that it acts with.
+        (Action::Grab, Device::Keys) if own == "click" => "drag".to_owned(),
+        (Action::Modes, _) if own.is_empty() => hold(bindings, Control::Menu, device),
+        (Action::Library, _) if own.is_empty() => bindings.label(Control::Menu, device),
+        (Action::Delete, _) if own.is_empty() => {
+            match bindings.label(Control::Centre, device).as_str() {
+                "" => String::new(),
+                centre => format!("{centre} {centre}"),
+            }
+        }
+        _ => own,
     }
 }
 
+fn hold(bindings: &Bindings, control: Control, device: Device) -> String {
+    match bindings.label(control, device).as_str() {
+        "" => String::new(),
+        label => format!("hold {label}"),
+    }
+}
+
+/// The control that stands for an action of the hands.
+fn control(action: Action) -> Option<Control> {
+    Some(match action {
+        Action::Act => Control::Act,
+        Action::Grab => Control::Grab,
+        Action::Finish => Control::Finish,
+        Action::Cancel => Control::Cancel,
+        Action::Undo => Control::Undo,
+        Action::Redo => Control::Redo,
+        Action::Library => Control::Library,
+        Action::Modes => Control::Modes,
+        Action::Save => Control::SaveObject,
+        Action::Delete => Control::Delete,
+        Action::Up => Control::CrossUp,
+        Action::Right => Control::CrossRight,
+        Action::Down => Control::CrossDown,
+        Action::Left => Control::CrossLeft,
+        Action::Centre | Action::Menu => return None,
+    })
+}
+
+/// Controls that show or hide a panel, by its id.
+const PANELS: [(Control, &str); 4] = [
+    (Control::Outline, "outline"),
+    (Control::Settings, "settings"),
+    (Control::Controls, "controls"),
+    (Control::Help, "help"),
+];
+
 pub(crate) fn commands(
-    keys: Res<ButtonInput<KeyCode>>,
-    screen: Res<Screen>,
-    pointer: Res<Pointer>,
+    controls: Res<Controls>,
     tools: Res<Tools>,
+    panels: Res<Panels>,
     mut commands: MessageWriter<Command>,
 ) {
-    if screen.is_typing() {
-        return;
-    }
-    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
-    let ctrl = keys.any_pressed([
-        KeyCode::ControlLeft,
-        KeyCode::ControlRight,
-        KeyCode::SuperLeft,
-        KeyCode::SuperRight,
-    ]);
-    if ctrl {
-        if keys.just_pressed(KeyCode::KeyZ) {
-            commands.write(if shift { Command::Redo } else { Command::Undo });
-        }
-        if keys.just_pressed(KeyCode::KeyY) {
-            commands.write(Command::Redo);
-        }
-        if keys.just_pressed(KeyCode::KeyS) {
-            commands.write(Command::Save);
-        }
-        return;
-    }
-    // Its keys mean axes then.
-    if pointer.stretching {
-        return;
-    }
-    for (key, mark) in [
-        (KeyCode::KeyU, "mark union"),
-        (KeyCode::KeyI, "mark intersect"),
-        (KeyCode::KeyM, "mark subtract"),
-        (KeyCode::KeyN, "mark cancel"),
+    for (control, command) in [
+        (Control::Undo, Command::Undo),
+        (Control::Redo, Command::Redo),
     ] {
-        if keys.just_pressed(key)
+        if controls.fired(control) {
+            commands.write(command);
+        }
+    }
+    for (control, command) in [(Control::Save, Command::Save)] {
+        if controls.just_pressed(control) {
+            commands.write(command);
+        }
+    }
+    for (control, mark) in [
+        (Control::MarkUnion, "mark union"),
+        (Control::MarkIntersect, "mark intersect"),
+        (Control::MarkSubtract, "mark subtract"),
+        (Control::Unmark, "mark cancel"),
+    ] {
+        if controls.just_pressed(control)
             && let Some(tool) = tools.active()
         {
             commands.write(Command::Tool {
@@ -75,15 +93,23 @@ pub(crate) fn commands(
             });
         }
     }
-    let digits = [
-        KeyCode::Digit1,
-        KeyCode::Digit2,
-        KeyCode::Digit3,
-        KeyCode::Digit4,
+    let modes = [
+        Control::Mode1,
+        Control::Mode2,
+        Control::Mode3,
+        Control::Mode4,
     ];
-    for (key, tool) in digits.into_iter().zip(tools.all()) {
-        if keys.just_pressed(key) {
+    for (control, tool) in modes.into_iter().zip(tools.all()) {
+        if controls.just_pressed(control) {
             commands.write(Command::Mode(tool.id.clone()));
+        }
+    }
+    for (control, id) in PANELS {
+        if controls.just_pressed(control) && panels.all().iter().any(|p| p.id == id) {
+            commands.write(Command::Panel {
+                id: id.to_owned(),
+                open: !panels.is_open(id),
+            });
         }
     }
 }

@@ -4,6 +4,7 @@
 //! while something is dragged moves it nearer or farther. The other hand stays where it is and
 //! keeps what it holds; Tab swaps them.
 
+pub mod bindings;
 mod keys;
 mod labels;
 mod orbit;
@@ -28,6 +29,7 @@ impl Plugin for FlatscreenPlugin {
         app.add_plugins(EguiPlugin::default())
             .init_resource::<Pointer>()
             .init_resource::<panels::Screen>()
+            .add_plugins(bindings::plugin)
             .add_systems(Startup, orbit::spawn)
             .add_systems(
                 Update,
@@ -37,6 +39,7 @@ impl Plugin for FlatscreenPlugin {
                     pointer::point,
                     stretch::stretch,
                     keys::commands,
+                    attend,
                 )
                     .chain()
                     .in_set(StudioSet::Gather)
@@ -51,4 +54,17 @@ impl Plugin for FlatscreenPlugin {
                 (panels::style, panels::show, labels::objects, labels::empty).chain(),
             );
     }
+}
+
+/// Where keys go from the next frame on.
+fn attend(
+    screen: Res<panels::Screen>,
+    pointer: Res<Pointer>,
+    mut attention: ResMut<bindings::Attention>,
+) {
+    attention.set_if_neq(bindings::Attention {
+        text: screen.is_typing(),
+        stretching: pointer.stretching,
+        ..*attention
+    });
 }

@@ -13,6 +13,7 @@ use midair_studio::{
     tools::{HintKey, Hints},
 };
 
+use crate::bindings::{Bindings, Control, Controls, Device};
 use crate::keys::key_name;
 use crate::pointer::Pointer;
 
@@ -119,8 +120,10 @@ fn draw(
     egui::Panel::bottom("hints").show(&mut root, |ui| {
         ui.add_space(4.0);
         panel::operands(ui, world.resource::<Project>().document());
-        let (hints, more) = with_keys(world.resource(), world.resource());
-        panel::hints(ui, &hints, key_name, &more);
+        let (bindings, device) = (world.resource(), world.resource::<Controls>().device());
+        let (hints, more) = with_keys(world.resource(), world.resource(), bindings, device);
+        let names = |action| key_name(action, bindings, device);
+        panel::hints(ui, &hints, &names, &more);
         ui.add_space(4.0);
     });
     for (dock, side) in [
@@ -260,38 +263,68 @@ fn notices(ctx: &egui::Context, view: egui::Rect, world: &World) {
         });
 }
 
-/// The tool's hints, with what only mouse and keyboard have.
-fn with_keys(hints: &Hints, pointer: &Pointer) -> (Hints, Vec<(&'static str, &'static str)>) {
+/// The tool's hints, with what only this way in has.
+fn with_keys(
+    hints: &Hints,
+    pointer: &Pointer,
+    bindings: &Bindings,
+    device: Device,
+) -> (Hints, Vec<(String, String)>) {
     let mut hints = hints.clone();
-    let more: &[_] = if pointer.stretching {
+    let named = |control| bindings.label(control, device);
+    let joined = |controls: &[Control]| {
+        let names: Vec<_> = controls.iter().map(|&c| named(c)).collect();
+        names.join(" ")
+    };
+    let more: Vec<(String, &str)> = if pointer.stretching {
         hints.buttons.clear();
-        &[
-            ("move", "larger or smaller"),
-            ("X Y Z A", "along which axis, all"),
-            ("click", "done"),
-            ("Esc", "put it back"),
+        vec![
+            ("move".to_owned(), "larger or smaller"),
+            (
+                joined(&[
+                    Control::AxisX,
+                    Control::AxisY,
+                    Control::AxisZ,
+                    Control::AxisAll,
+                ]),
+                "along which axis, all",
+            ),
+            (named(Control::Act), "done"),
+            (named(Control::Cancel), "put it back"),
         ]
     } else if pointer.holds() {
         // The other hand is a key away.
         hints
             .buttons
             .retain(|h| h.action != HintKey::Action(Action::Grab));
-        &[
-            ("wheel", "nearer, farther"),
-            ("R", "turn"),
-            ("Tab", "other hand"),
+        vec![
+            ("wheel".to_owned(), "nearer, farther"),
+            (named(Control::Turn), "turn"),
+            (named(Control::SwapHands), "other hand"),
         ]
     } else if pointer.is_over() {
-        &[("U I M", "mark ∪ ∩ −"), ("N", "unmark"), ("S", "stretch")]
+        vec![
+            (
+                joined(&[
+                    Control::MarkUnion,
+                    Control::MarkIntersect,
+                    Control::MarkSubtract,
+                ]),
+                "mark ∪ ∩ −",
+            ),
+            (named(Control::Unmark), "unmark"),
+            (named(Control::Stretch), "stretch"),
+        ]
     } else {
-        &[
-            ("middle drag", "orbit"),
-            ("Shift", "pan"),
-            ("wheel", "zoom"),
-            ("F", "show all"),
+        vec![
+            (named(Control::Orbit), "orbit"),
+            (named(Control::Pan), "pan"),
+            ("wheel".to_owned(), "zoom"),
+            (named(Control::FrameSelection), "show all"),
         ]
     };
-    (hints, more.to_vec())
+    let more = more.into_iter().map(|(key, does)| (key, does.to_owned()));
+    (hints, more.collect())
 }
 
 /// The window says what one works on and whether it is saved.

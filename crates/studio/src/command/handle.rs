@@ -19,15 +19,15 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, (buttons, handle).chain().in_set(StudioSet::Ask));
 }
 
-/// The buttons that mean the same in every mode. The menu is the right hand's.
-fn buttons(hands: Res<Hands>, mut commands: MessageWriter<Command>) {
+/// The buttons that mean the same in every mode. The menu is the leading hand's.
+fn buttons(hands: Res<Hands>, settings: Res<Settings>, mut commands: MessageWriter<Command>) {
     if hands.pressed(Action::Undo).is_some() {
         commands.write(Command::Undo);
     }
     if hands.pressed(Action::Redo).is_some() {
         commands.write(Command::Redo);
     }
-    if hands.get(Side::Right).pressed(Action::Library) {
+    if hands.get(settings.hands.main()).pressed(Action::Library) {
         commands.write(Command::ToggleLibrary);
     }
 }

@@ -57,15 +57,20 @@ fn write(settings: Res<Settings>, places: Res<Places>, mut begun: Local<bool>) {
     };
     IoTaskPool::get()
         .spawn(async move {
-            if let Err(error) = replace(&path, &text) {
+            if let Err(error) = replace_file(&path, &text) {
                 warn!("{} was not written: {error}", path.display());
             }
         })
         .detach();
 }
 
-/// Either the old file or the new one is there, never half of it.
-fn replace(path: &Path, text: &str) -> std::io::Result<()> {
+/// Writes a small file of a person's, and the folders it needs. Either the old file or the new one is
+/// there, never half of it.
+///
+/// # Errors
+///
+/// What the system says; the old file is as it was.
+pub fn replace_file(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
     let aside = path.with_extension("ron.new");

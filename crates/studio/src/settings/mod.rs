@@ -4,6 +4,7 @@
 //! [`Command::Set`](crate::command::Command::Set) changes it, so that a session which changes a setting plays back. A
 //! session begins with the defaults, a person with what is kept in `settings.ron`.
 
+mod hands;
 mod keep;
 mod look;
 mod patch;
@@ -11,7 +12,8 @@ mod patch;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub use keep::KeepSettingsPlugin;
+pub use hands::HandsSettings;
+pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
 
@@ -21,6 +23,8 @@ pub use patch::SettingFault;
 pub struct Settings {
     /// The room and how it is drawn.
     pub look: LookSettings,
+    /// Which hand leads.
+    pub hands: HandsSettings,
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
