@@ -43,6 +43,8 @@ pub enum Stage {
     Window,
     /// Without a window or a graphics card.
     Bare,
+    /// As in a window, but nobody sees it and no graphics card draws it: devices are written into it.
+    Unseen,
     /// Without a window, but able to draw a picture.
     Picture,
 }
@@ -51,7 +53,7 @@ pub enum Stage {
 pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
     let mut app = App::new();
     let window = WindowPlugin {
-        primary_window: (stage == Stage::Window).then(|| Window {
+        primary_window: matches!(stage, Stage::Window | Stage::Unseen).then(|| Window {
             title: "Midair".to_owned(),
             name: Some("midair".to_owned()),
             resolution: (1280, 720).into(),
@@ -76,7 +78,7 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
     if stage != Stage::Window {
         plugins = plugins.disable::<WinitPlugin>();
     }
-    if stage == Stage::Bare {
+    if matches!(stage, Stage::Bare | Stage::Unseen) {
         plugins = plugins.set(RenderPlugin {
             render_creation: RenderCreation::Automatic(Box::new(WgpuSettings {
                 backends: None,
@@ -96,6 +98,9 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         }
         Stage::Picture => {
             app.add_plugins(RoomPlugin);
+        }
+        Stage::Unseen => {
+            app.add_plugins(FlatscreenPlugin);
         }
         Stage::Bare => {}
     }

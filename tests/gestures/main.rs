@@ -1,6 +1,8 @@
 //! Whole gestures through the hands, in the whole studio; and the training sessions, measured
 //! against an exact boolean.
 
+mod desk;
+mod gamepad;
 mod holding;
 mod operands;
 mod oracle;

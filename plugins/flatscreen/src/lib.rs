@@ -5,18 +5,23 @@
 //! keeps what it holds; Tab swaps them.
 
 pub mod bindings;
+pub mod focus;
+mod gamepad;
 mod keys;
 mod labels;
 mod orbit;
 mod panels;
 mod place;
 mod pointer;
+mod ring;
 mod stretch;
 
 use bevy::prelude::*;
-use bevy_egui::{EguiPlugin, EguiPrimaryContextPass};
+use bevy_egui::{EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
+use leafwing_input_manager::plugin::InputManagerSystem;
 use midair_studio::{StudioSet, hands::AdvanceHands};
 
+pub use gamepad::Pad;
 pub use keys::key_name;
 pub use orbit::Orbit;
 pub use pointer::Pointer;
@@ -28,17 +33,33 @@ impl Plugin for FlatscreenPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(EguiPlugin::default())
             .init_resource::<Pointer>()
+            .init_resource::<Pad>()
+            .init_resource::<focus::Typing>()
+            .init_resource::<ring::Ring>()
             .init_resource::<panels::Screen>()
+            .init_resource::<focus::Focus>()
+            .add_systems(
+                PreUpdate,
+                focus::drive
+                    .after(InputManagerSystem::Update)
+                    .after(EguiPreUpdateSet::ProcessInput)
+                    .before(EguiPreUpdateSet::BeginPass),
+            )
             .add_plugins(bindings::plugin)
             .add_systems(Startup, orbit::spawn)
             .add_systems(
                 Update,
                 (
+                    gamepad::lead,
+                    gamepad::camera,
                     orbit::steer,
                     // The hand follows the camera of this frame.
-                    pointer::point,
-                    stretch::stretch,
+                    (pointer::point, stretch::stretch)
+                        .chain()
+                        .run_if(|pad: Res<Pad>| !pad.leads()),
+                    gamepad::hands,
                     keys::commands,
+                    ring::turn,
                     attend,
                 )
                     .chain()
@@ -51,7 +72,15 @@ impl Plugin for FlatscreenPlugin {
             )
             .add_systems(
                 EguiPrimaryContextPass,
-                (panels::style, panels::show, labels::objects, labels::empty).chain(),
+                (
+                    panels::style,
+                    panels::show,
+                    focus::keyboard,
+                    ring::show,
+                    labels::objects,
+                    labels::empty,
+                )
+                    .chain(),
             );
     }
 }
@@ -59,11 +88,14 @@ impl Plugin for FlatscreenPlugin {
 /// Where keys go from the next frame on.
 fn attend(
     screen: Res<panels::Screen>,
+    (focus, typing): (Res<focus::Focus>, Res<focus::Typing>),
     pointer: Res<Pointer>,
     mut attention: ResMut<bindings::Attention>,
 ) {
     attention.set_if_neq(bindings::Attention {
-        text: screen.is_typing(),
+        text: screen.is_text(),
+        panel: focus.is_inside(),
+        keyboard: typing.open,
         stretching: pointer.stretching,
         ..*attention
     });

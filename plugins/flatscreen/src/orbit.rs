@@ -10,11 +10,13 @@ use midair_studio::{
     show::{ObjectMap, is_software},
 };
 
+use crate::bindings::{Control, Controls};
+use crate::gamepad::Pad;
 use crate::panels::Screen;
 use crate::pointer::Pointer;
 
 /// Of the height of the window, in radians.
-const FIELD_OF_VIEW: f32 = 0.75;
+pub(crate) const FIELD_OF_VIEW: f32 = 0.75;
 
 /// Where the camera is, as one turns it.
 #[derive(Component, Clone, Copy, Debug)]
@@ -132,20 +134,21 @@ pub(crate) fn lines(scroll: &AccumulatedMouseScroll) -> f32 {
 
 /// F shows what is selected, or everything.
 pub(crate) fn frame(
-    keys: Res<ButtonInput<KeyCode>>,
-    screen: Res<Screen>,
+    controls: Res<Controls>,
+    mut pad: ResMut<Pad>,
     project: Res<Project>,
     selection: Res<Selection>,
     map: Res<ObjectMap>,
     transforms: Query<&Transform, Without<Orbit>>,
     mut orbit: Single<&mut Orbit>,
 ) {
-    let ctrl = keys.any_pressed([KeyCode::ControlLeft, KeyCode::ControlRight]);
-    if !keys.just_pressed(KeyCode::KeyF) || ctrl || screen.is_typing() {
+    let asked = std::mem::take(&mut pad.frame) || controls.just_pressed(Control::FrameSelection);
+    let everything = controls.just_pressed(Control::FrameAll);
+    if !asked && !everything {
         return;
     }
     let document = project.document();
-    let all = selection.0.is_empty();
+    let all = everything || selection.0.is_empty();
     let mut low = Vec3::INFINITY;
     let mut high = Vec3::NEG_INFINITY;
     for (id, object) in document.objects() {

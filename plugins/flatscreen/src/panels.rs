@@ -14,6 +14,8 @@ use midair_studio::{
 };
 
 use crate::bindings::{Bindings, Control, Controls, Device};
+use crate::focus::{Focus, Map};
+use crate::gamepad::Pad;
 use crate::keys::key_name;
 use crate::pointer::Pointer;
 
@@ -27,6 +29,8 @@ pub(crate) struct Screen {
     /// A menu, a list or a slider has the pointer wherever it is.
     busy: bool,
     typing: bool,
+    /// A field takes letters.
+    text: bool,
     /// Something that floats over the view lies under the pointer.
     floating: bool,
 }
@@ -40,9 +44,14 @@ impl Screen {
         self.busy || self.floating || !view.contains(egui::pos2(cursor.x, cursor.y))
     }
 
-    /// Whether keys are letters and not shortcuts.
+    /// Whether keys are a panel's and not shortcuts.
     pub fn is_typing(&self) -> bool {
         self.typing
+    }
+
+    /// Whether keys are letters.
+    pub fn is_text(&self) -> bool {
+        self.text
     }
 
     /// What the panels leave free.
@@ -76,20 +85,29 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
     let mut asks = Vec::new();
     world.resource_scope(|world, mut screen: Mut<Screen>| {
         world.resource_scope(|world, mut panels: Mut<Panels>| {
-            draw(
-                &ctx,
-                world,
-                screen.bypass_change_detection(),
-                panels.bypass_change_detection(),
-                &mut asks,
-            );
+            world.resource_scope(|world, mut focus: Mut<Focus>| {
+                draw(
+                    &ctx,
+                    world,
+                    screen.bypass_change_detection(),
+                    panels.bypass_change_detection(),
+                    focus.bypass_change_detection(),
+                    &mut asks,
+                );
+            });
         });
     });
     for ask in asks {
         match ask {
             // At the pointer is the panel itself: it is put where one looks, in the next frame.
             Command::Place { component, .. } => {
-                world.resource_mut::<Pointer>().picked.push(component);
+                if world.resource::<Pad>().leads() {
+                    world.resource_mut::<Pad>().picked.push(component);
+                    // The hands go on with it; the panel stays for the next one.
+                    world.resource_mut::<Focus>().leave();
+                } else {
+                    world.resource_mut::<Pointer>().picked.push(component);
+                }
             }
             other => {
                 world.write_message(other);
@@ -103,8 +121,11 @@ fn draw(
     world: &World,
     screen: &mut Screen,
     panels: &mut Panels,
+    focus: &mut Focus,
     asks: &mut Vec<Command>,
 ) {
+    focus.begin(ctx);
+    let mut map = Map::new(ctx);
     let mut root = egui::Ui::new(
         ctx.clone(),
         "root".into(),
@@ -117,6 +138,7 @@ fn draw(
         asks.extend(panel::bar(ui, &mut screen.bar, world, panels));
         ui.add_space(2.0);
     });
+    map.end("bar", false);
     egui::Panel::bottom("hints").show(&mut root, |ui| {
         ui.add_space(4.0);
         panel::operands(ui, world.resource::<Project>().document());
@@ -126,20 +148,21 @@ fn draw(
         panel::hints(ui, &hints, &names, &more);
         ui.add_space(4.0);
     });
+    map.end("hints", false);
     for (dock, side) in [
         (Dock::Left, egui::Panel::left("left").default_size(272.0)),
         (Dock::Right, egui::Panel::right("right").default_size(288.0)),
     ] {
         let open = panels.open_in(dock);
         if !open.is_empty() {
-            column(&mut root, side, &open, world, panels, asks);
+            column(&mut root, side, &open, world, panels, &mut map, asks);
         }
     }
     let view = root.available_rect_before_wrap();
     screen.view = Some(view);
     for info in panels.open_in(Dock::Window) {
         let mut open = true;
-        egui::Window::new(format!("{}  {}", info.icon, info.title))
+        let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))
             .id(egui::Id::new(info.id))
             .open(&mut open)
             .collapsible(false)
@@ -148,6 +171,9 @@ fn draw(
             .pivot(egui::Align2::CENTER_CENTER)
             .vscroll(true)
             .show(ctx, |ui| fill(ui, &info, world, panels, asks));
+        if let Some(shown) = shown {
+            map.layer(info.id, shown.response.layer_id);
+        }
         if !open {
             asks.push(close(&info));
         }
@@ -158,19 +184,16 @@ fn draw(
             ui.add_space(8.0);
             fill(ui, &info, world, panels, asks);
         });
+        map.layer(info.id, shown.response.layer_id);
         if shown.should_close() {
             asks.push(close(&info));
         }
     }
     notices(ctx, view, world);
-    // Tab is the hands': a button that it led to would take every shortcut.
-    if !ctx.text_edit_focused()
-        && let Some(focused) = ctx.memory(|m| m.focused())
-    {
-        ctx.memory_mut(|m| m.surrender_focus(focused));
-    }
+    focus.settle(ctx, map);
     let at = ctx.input(|i| i.pointer.interact_pos());
-    screen.typing = ctx.text_edit_focused() || ctx.any_popup_open();
+    screen.text = ctx.text_edit_focused();
+    screen.typing = screen.text || ctx.any_popup_open() || focus.is_inside();
     screen.busy = ctx.egui_is_using_pointer() || ctx.any_popup_open();
     screen.floating = at
         .and_then(|at| ctx.layer_id_at(at))
@@ -191,12 +214,14 @@ fn column(
     open: &[PanelInfo],
     world: &World,
     panels: &mut Panels,
+    map: &mut Map,
     asks: &mut Vec<Command>,
 ) {
     let share = root.available_height() / open.len() as f32 - 48.0;
     side.resizable(true)
         .size_range(200.0..=480.0)
         .show(root, |ui| {
+            map.begin();
             for (i, info) in open.iter().enumerate() {
                 if i > 0 {
                     ui.separator();
@@ -215,6 +240,7 @@ fn column(
                     ui.set_max_height(share.max(80.0));
                     fill(ui, info, world, panels, asks);
                 });
+                map.end(info.id, true);
             }
         });
 }

@@ -90,7 +90,7 @@ impl Pointer {
         self.latched[side as usize]
     }
 
-    fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         self.latched = [false; 2];
         self.grip = None;
         self.acting = false;

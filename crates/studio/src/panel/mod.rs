@@ -5,18 +5,22 @@
 
 mod bar;
 mod hints;
+mod keyboard;
 mod library;
 mod notices;
 mod objects;
 mod registry;
+mod ring;
 mod style;
 
 pub use bar::{Bar, bar};
 pub use hints::{KeyNames, hints};
+pub use keyboard::{Key, Keyboard, keyboard};
 pub use library::library;
 pub use notices::{STAYS, notices};
 pub use objects::operands;
 pub use registry::{AddPanel, Dock, Panel, PanelInfo, Panels};
+pub use ring::{ring, sector};
 pub use style::{ACCENT, apply_style};
 
 pub use bevy_egui::egui;

@@ -372,7 +372,10 @@ fn heard(bound: &Bound, attention: Attention) -> Option<bool> {
     }
     let device = bound.parts[0].device();
     let on_keys = device == Device::Keys;
+    let context = bound.control.context();
     let letter = |part: &Part| match part {
+        // What leaves a field is heard in it.
+        Part::Key(KeyCode::Escape) => context == Context::View,
         Part::Key(key) => !is_function(*key),
         _ => false,
     };
@@ -381,7 +384,6 @@ fn heard(bound: &Bound, attention: Attention) -> Option<bool> {
     });
     // Letters belong to the field that is typed into, and Ctrl with letters too.
     let typed = on_keys && attention.text && bound.parts.iter().any(letter);
-    let context = bound.control.context();
     let open = match context {
         Context::Typing => attention.keyboard,
         _ if !on_keys && attention.keyboard => false,

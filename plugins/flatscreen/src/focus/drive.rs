@@ -1,0 +1,244 @@
+//! Keys and gamepad move the focus, press, slide and leave.
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContext, EguiInput, PrimaryEguiContext, egui};
+use midair_studio::{
+    command::Command,
+    panel::{Dock, Panels},
+};
+
+use super::{Focus, Spot, Typing, map};
+use crate::bindings::{Control, Controls, Device};
+
+/// Steps a second of a slider at full deflection of the stick.
+const SLIDES: f32 = 30.0;
+
+/// The primary context, its input before the pass begins.
+type Primary<'w, 's> =
+    Query<'w, 's, (&'static mut EguiContext, &'static mut EguiInput), With<PrimaryEguiContext>>;
+
+pub(crate) fn drive(
+    controls: Res<Controls>,
+    mouse: Res<ButtonInput<MouseButton>>,
+    time: Res<Time>,
+    panels: Res<Panels>,
+    (mut focus, mut typing): (ResMut<Focus>, ResMut<Typing>),
+    mut primary: Primary,
+    mut commands: MessageWriter<Command>,
+) {
+    let Ok((mut context, mut input)) = primary.single_mut() else {
+        return;
+    };
+    let ctx = context.get_mut().clone();
+    let focus = focus.bypass_change_detection();
+    // The mouse says by itself where it works.
+    if mouse.get_just_pressed().next().is_some() {
+        focus.leave();
+    }
+    // What the gamepad has opened is what it works in next.
+    let open: Vec<_> = panels
+        .all()
+        .iter()
+        .map(|p| p.id)
+        .filter(|id| panels.is_open(id))
+        .collect();
+    if controls.device() == Device::Pad
+        && let Some(fresh) = open.iter().find(|id| !focus.open.contains(id))
+    {
+        focus.want(fresh);
+    }
+    focus.open = open;
+    // A question is answered before anything else.
+    let asked = panels.open_in(Dock::Modal).last().map(|p| p.id);
+    if let Some(modal) = asked
+        && focus
+            .region()
+            .is_none_or(|r| r.name != modal && r.name != "popup")
+    {
+        focus.want(modal);
+    }
+    if typing.open {
+        typing.drive(&controls, focus, &mut input);
+        return;
+    }
+    if controls.just_pressed(Control::PanelNext) {
+        focus.enter(&ctx, 1);
+        return;
+    }
+    if controls.just_pressed(Control::PanelPrevious) {
+        focus.enter(&ctx, -1);
+        return;
+    }
+    if !focus.inside {
+        return;
+    }
+    if controls.just_pressed(Control::PanelTabRight) {
+        focus.enter(&ctx, 1);
+    } else if controls.just_pressed(Control::PanelTabLeft) {
+        focus.enter(&ctx, -1);
+    }
+    if controls.just_pressed(Control::PanelLeave) {
+        let by_pad = controls.device() == Device::Pad;
+        focus.close(&mut input, by_pad, &mut commands);
+        return;
+    }
+    focus.walk(&ctx, &mut input, &controls);
+    if controls.just_pressed(Control::PanelPress) {
+        if focus.is_text() {
+            typing.begin();
+            return;
+        }
+        for pressed in [true, false] {
+            input.events.push(key(egui::Key::Enter, pressed));
+        }
+    }
+    focus.slide(
+        &mut input,
+        controls.stick(Control::ViewStick).x,
+        time.delta_secs(),
+    );
+}
+
+impl Focus {
+    /// Into the panels, or from one to the next or the one before.
+    fn enter(&mut self, ctx: &egui::Context, by: isize) {
+        if self.regions.is_empty() {
+            return;
+        }
+        let count = self.regions.len() as isize;
+        let now = self.regions.iter().position(|r| r.name == self.region);
+        let to = match now {
+            Some(now) if self.inside => (now as isize + by).rem_euclid(count),
+            // Back to where one was, or to what was opened last.
+            Some(now) => now as isize,
+            None => count - 1,
+        };
+        let region = &self.regions[to as usize];
+        let back = self
+            .spot
+            .filter(|_| !self.inside && now == Some(to as usize));
+        let spot = back
+            .and_then(|s| map::nearest(&region.spots, s.rect))
+            .unwrap_or_else(|| region.first());
+        self.region = region.name;
+        self.inside = true;
+        self.give(ctx, spot);
+    }
+
+    /// Out of a menu, out of a window (which closes), out of the panels.
+    fn close(
+        &mut self,
+        input: &mut EguiInput,
+        by_pad: bool,
+        commands: &mut MessageWriter<Command>,
+    ) {
+        let Some(region) = self.region() else {
+            self.leave();
+            return;
+        };
+        if region.name == "popup" {
+            for pressed in [true, false] {
+                input.events.push(key(egui::Key::Escape, pressed));
+            }
+            self.region = "bar";
+            return;
+        }
+        // On the gamepad what B leaves is out of the way; a column stays for the keyboard.
+        if region.closes && (region.floats || by_pad) {
+            commands.write(Command::Panel {
+                id: region.name.to_owned(),
+                open: false,
+            });
+        }
+        self.leave();
+    }
+
+    /// One step within the panel, by the D-pad, or by the arrows where nothing else needs them.
+    fn walk(&mut self, ctx: &egui::Context, input: &mut EguiInput, controls: &Controls) {
+        let mut steps = Vec::new();
+        for (control, along) in [
+            (Control::PanelUp, egui::vec2(0.0, -1.0)),
+            (Control::PanelRight, egui::vec2(1.0, 0.0)),
+            (Control::PanelDown, egui::vec2(0.0, 1.0)),
+            (Control::PanelLeft, egui::vec2(-1.0, 0.0)),
+        ] {
+            if controls.fired(control) {
+                steps.push(along);
+            }
+        }
+        let (text, slider) = (self.is_text(), self.is_slider());
+        input.events.retain(|event| {
+            let egui::Event::Key {
+                key,
+                pressed: true,
+                modifiers,
+                ..
+            } = event
+            else {
+                return true;
+            };
+            let along = match key {
+                egui::Key::ArrowUp if !slider || text => egui::vec2(0.0, -1.0),
+                egui::Key::ArrowDown if !slider || text => egui::vec2(0.0, 1.0),
+                egui::Key::ArrowRight if !text && !slider => egui::vec2(1.0, 0.0),
+                egui::Key::ArrowLeft if !text && !slider => egui::vec2(-1.0, 0.0),
+                _ => return true,
+            };
+            if modifiers.any() {
+                return true;
+            }
+            steps.push(along);
+            false
+        });
+        for along in steps {
+            let (Some(from), Some(region)) = (self.spot, self.region()) else {
+                return;
+            };
+            if let Some(spot) = map::next(&region.spots, from.rect, along) {
+                self.give(ctx, spot);
+                show(input, spot);
+            }
+        }
+    }
+
+    /// The stick moves what slides.
+    fn slide(&mut self, input: &mut EguiInput, deflection: f32, dt: f32) {
+        if !self.is_slider() || deflection == 0.0 {
+            self.slid = 0.0;
+            return;
+        }
+        self.slid += deflection * deflection.abs() * SLIDES * dt;
+        let arrow = if self.slid > 0.0 {
+            egui::Key::ArrowRight
+        } else {
+            egui::Key::ArrowLeft
+        };
+        while self.slid.abs() >= 1.0 {
+            self.slid -= self.slid.signum();
+            input.events.push(key(arrow, true));
+        }
+    }
+}
+
+pub(super) fn key(key: egui::Key, pressed: bool) -> egui::Event {
+    egui::Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: egui::Modifiers::NONE,
+    }
+}
+
+/// Lists scroll to what has the focus.
+fn show(input: &mut EguiInput, spot: Spot) {
+    use egui::accesskit::{Action, ActionRequest, TreeId};
+    input
+        .events
+        .push(egui::Event::AccessKitActionRequest(ActionRequest {
+            action: Action::ScrollIntoView,
+            target_tree: TreeId::ROOT,
+            target_node: spot.id.accesskit_id(),
+            data: None,
+        }));
+}

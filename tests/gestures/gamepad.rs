@@ -1,0 +1,283 @@
+//! The gamepad, through Bevy's own messages.
+
+use bevy::input::gamepad::GamepadButton as Button;
+use bevy::math::{Vec2, Vec3};
+use bevy::prelude::*;
+use midair_document::ObjectId;
+use midair_flatscreen::focus::Typing;
+use midair_studio::hands::Side;
+use midair_studio::panel::{Key, Keyboard};
+
+use crate::desk::Desk;
+
+impl Desk {
+    /// Types on the keyboard on the screen, by the shortest ways.
+    fn type_text(&mut self, text: &str) {
+        for letter in text.chars() {
+            if letter == ' ' {
+                self.tap(Button::North);
+                continue;
+            }
+            let from = self.world().resource::<Typing>().state;
+            for button in way(from, Key::Letter(letter)) {
+                self.tap(button);
+            }
+            self.tap(Button::South);
+        }
+    }
+
+    /// Takes a component out of the library, by its name: it is at the leading hand then.
+    pub fn take(&mut self, name: &str) -> ObjectId {
+        let before = self.document().len();
+        if !self.is_open("library") {
+            self.tap(Button::Start);
+        } else if !self.focus().is_inside() {
+            self.tap(Button::LeftThumb);
+        }
+        self.wait(3);
+        assert!(self.focus().is_inside(), "in the library");
+        if !self.focus().label().contains(name) {
+            for _ in 0..60 {
+                if self.focus().is_text() {
+                    break;
+                }
+                self.tap(Button::DPadUp);
+            }
+            assert!(self.focus().is_text(), "on the search field");
+            self.tap(Button::South);
+            assert!(self.world().resource::<Typing>().open, "the keyboard is up");
+            for _ in 0..24 {
+                self.tap(Button::West);
+            }
+            let word = name.to_lowercase();
+            self.type_text(&word);
+            self.tap(Button::Start);
+            self.wait(3);
+        }
+        let mut steps = [Button::DPadDown, Button::DPadRight, Button::DPadLeft]
+            .into_iter()
+            .cycle();
+        for _ in 0..24 {
+            if self.focus().label().contains(name) {
+                break;
+            }
+            // Down a row, across it and back.
+            let step = steps.next().unwrap();
+            self.tap(step);
+        }
+        assert!(
+            self.focus().label().contains(name),
+            "{}",
+            self.focus().label()
+        );
+        self.tap(Button::South);
+        self.settle();
+        assert_eq!(self.document().len(), before + 1, "{:?}", self.warnings());
+        self.document().objects().next_back().unwrap().0
+    }
+
+    /// Moves the leading hand to a point of the world with the sticks, as one does who looks.
+    pub fn aim(&mut self, at: Vec3) {
+        let side = self.pad_hands().leading();
+        for round in 0..4 {
+            self.presses += 1;
+            for _ in 0..400 {
+                let hand = self.hand(side);
+                let gap = self.seen(at) - self.seen(hand);
+                let flat = gap.truncate() / self.seen(hand).z.max(0.1);
+                if flat.length() < 4e-4 {
+                    break;
+                }
+                self.stick(false, (flat * 12.0).clamp_length_max(1.0).map(firm));
+                self.frame();
+            }
+            self.stick(false, Vec2::ZERO);
+            self.wait(2);
+            let hand = self.hand(side);
+            if hand.distance(at) < 2e-3 {
+                return;
+            }
+            assert!(round < 3, "{hand} is not {at}");
+            self.down(Button::LeftTrigger2);
+            for _ in 0..400 {
+                let hand = self.hand(side);
+                let gap = self.seen(at).z - self.seen(hand).z;
+                if gap.abs() < 4e-4 {
+                    break;
+                }
+                let push = firm((gap * 8.0).clamp(-1.0, 1.0));
+                self.stick(false, Vec2::new(0.0, push));
+                self.frame();
+            }
+            self.stick(false, Vec2::ZERO);
+            self.frame();
+            self.up(Button::LeftTrigger2);
+        }
+    }
+
+    /// Points at an object: the surface gives the depth.
+    pub fn point(&mut self, at: Vec3) {
+        let side = self.pad_hands().leading();
+        self.presses += 1;
+        for _ in 0..400 {
+            let hand = self.hand(side);
+            let (to, from) = (self.seen(at), self.seen(hand));
+            let gap = to.truncate() / to.z - from.truncate() / from.z;
+            if gap.length() < 1e-3 {
+                break;
+            }
+            self.stick(false, (gap * 12.0).clamp_length_max(1.0).map(firm));
+            self.frame();
+        }
+        self.stick(false, Vec2::ZERO);
+        self.wait(2);
+    }
+
+    /// Carries what the leading hand touches by so much.
+    pub fn carry(&mut self, by: Vec3) {
+        let side = self.pad_hands().leading();
+        self.down(Button::RightTrigger);
+        let from = self.hand(side);
+        self.aim(from + by);
+        self.up(Button::RightTrigger);
+        self.wait(2);
+    }
+}
+
+/// Beyond the dead zone, and finer near the middle.
+fn firm(push: f32) -> f32 {
+    push.signum() * (0.12 + 0.88 * push.abs().sqrt()).min(1.0) * f32::from(push != 0.0)
+}
+
+fn way(from: Keyboard, to: Key) -> Vec<Button> {
+    let mut reached = vec![(from, Vec::new())];
+    for i in 0.. {
+        let (at, steps): (Keyboard, Vec<Button>) = reached[i].clone();
+        if at.key() == to {
+            return steps;
+        }
+        for (button, right, down) in [
+            (Button::DPadUp, 0, -1),
+            (Button::DPadRight, 1, 0),
+            (Button::DPadDown, 0, 1),
+            (Button::DPadLeft, -1, 0),
+        ] {
+            let mut next = at;
+            next.step(right, down);
+            if reached.iter().all(|(k, _)| *k != next) {
+                let mut steps = steps.clone();
+                steps.push(button);
+                reached.push((next, steps));
+            }
+        }
+    }
+    unreachable!()
+}
+
+#[test]
+fn start_opens_the_library_and_the_focus_is_in_it() {
+    let mut desk = Desk::new();
+    desk.plug();
+    desk.tap(Button::Start);
+    desk.wait(4);
+    assert!(desk.is_open("library"));
+    assert!(desk.focus().is_inside());
+    let first = desk.focus().spot();
+    desk.tap(Button::DPadDown);
+    assert_ne!(desk.focus().spot(), first);
+    desk.tap(Button::East);
+    desk.wait(4);
+    assert!(!desk.is_open("library"));
+    assert!(!desk.focus().is_inside());
+}
+
+#[test]
+fn a_component_is_found_by_typing_and_carried() {
+    let mut desk = Desk::new();
+    desk.plug();
+    let id = desk.take("Cube");
+    let at = desk.document().object(id).unwrap().placement.translation;
+    let hand = desk.hand(Side::Right);
+    assert!(hand.distance(at) < 1e-4, "the hand is at it: {hand} {at}");
+    desk.carry(Vec3::new(0.1, 0.2, 0.05));
+    let now = desk.document().object(id).unwrap().placement.translation;
+    assert!(
+        now.distance(at + Vec3::new(0.1, 0.2, 0.05)) < 3e-3,
+        "{at} {now}"
+    );
+    desk.tap(Button::West);
+    let now = desk.document().object(id).unwrap().placement.translation;
+    assert!(now.distance(at) < 1e-6, "X undoes");
+    assert_eq!(desk.warnings(), [] as [String; 0]);
+}
+
+#[test]
+fn both_hands_scale_after_a_swap_and_a_pulled_plug_drops_nothing() {
+    let mut desk = Desk::new();
+    desk.plug();
+    let id = desk.take("Cube");
+    let before = desk.document().object(id).unwrap().placement;
+    desk.push(false, Vec2::new(-1.0, 0.0), 6);
+    desk.down(Button::RightTrigger);
+    desk.tap(Button::North);
+    assert_eq!(desk.pad_hands().leading(), Side::Left);
+    assert!(desk.pad_hands().is_latched(Side::Right));
+    // The button that was down all the time takes hold with the other hand once it is pressed anew.
+    desk.up(Button::RightTrigger);
+    desk.push(false, Vec2::new(1.0, 0.0), 12);
+    assert_eq!(desk.touched(Side::Left), Some(id));
+    desk.down(Button::RightTrigger);
+    desk.push(false, Vec2::new(1.0, 0.0), 12);
+    desk.up(Button::RightTrigger);
+    // The other hand still holds it.
+    assert!(desk.pad_hands().is_latched(Side::Right));
+    let shown = {
+        let map = desk.world().resource::<midair_studio::show::Drafts>();
+        *map.get(id).expect("held")
+    };
+    assert!(shown.scale.x > 1.05 * before.scale.x, "{}", shown.scale);
+    desk.unplug();
+    desk.wait(2);
+    let after = desk.document().object(id).unwrap().placement;
+    assert!(after.translation.distance(shown.translation) < 1e-4);
+    assert!(
+        after.scale.distance(shown.scale) < 1e-4,
+        "{} {}",
+        after.scale,
+        shown.scale
+    );
+    assert!(!desk.pad_hands().holds());
+    assert_eq!(desk.warnings().len(), 1, "{:?}", desk.warnings());
+    assert!(desk.warnings()[0].contains("not connected"));
+    // It comes back and goes on.
+    desk.plug();
+    desk.tap(Button::West);
+    let undone = desk.document().object(id).unwrap().placement;
+    assert_eq!(undone, before);
+}
+
+#[test]
+fn undo_repeats_while_it_is_held() {
+    let mut desk = Desk::new();
+    desk.plug();
+    desk.take("Cube");
+    for _ in 0..6 {
+        desk.carry(Vec3::new(0.05, 0.0, 0.0));
+    }
+    let steps = |d: &Desk| {
+        let project = d.world().resource::<midair_studio::project::Project>();
+        project.history().undo_len()
+    };
+    assert_eq!(steps(&desk), 7);
+    desk.down(Button::West);
+    assert_eq!(steps(&desk), 6);
+    desk.wait(85);
+    desk.up(Button::West);
+    assert!(steps(&desk) <= 2, "{}", steps(&desk));
+    // With LB it is redo.
+    let left = steps(&desk);
+    desk.down(Button::LeftTrigger);
+    desk.tap(Button::West);
+    desk.up(Button::LeftTrigger);
+    assert_eq!(steps(&desk), left + 1);
+}
