@@ -5,7 +5,7 @@ use midair_solid::SolidError;
 
 use crate::figure::Figure;
 use crate::measure::Budget;
-use crate::{bake, csg, fuse, many, surface};
+use crate::{bake, csg, fuse, many, scaffold, surface};
 
 /// A workload that could not be carried out.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +64,7 @@ enum Work {
     Bake(bake::Subject),
     Surface(surface::Subject),
     Fuse,
+    Scaffold(scaffold::Subject),
 }
 
 impl Workload {
@@ -94,6 +95,7 @@ impl Workload {
             },
             Work::Surface(subject) => surface::run(subject, budget)?,
             Work::Fuse => fuse::run(budget)?,
+            Work::Scaffold(subject) => scaffold::run(subject, budget)?,
         };
         let (times, details) = measured;
         let figure = Figure::new(&self.name, self.paper, &times, details);
@@ -134,6 +136,12 @@ pub fn workloads() -> Vec<Workload> {
         all.push(Workload::new(subject.name(), Work::Surface(subject)));
     }
     all.push(Workload::new("fuse/5x64-in-256", Work::Fuse));
+    for subject in scaffold::Subject::ALL {
+        all.push(Workload {
+            paper: subject.paper(),
+            ..Workload::new(subject.name(), Work::Scaffold(subject))
+        });
+    }
     all
 }
 

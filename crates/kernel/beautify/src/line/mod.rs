@@ -1,0 +1,95 @@
+//! Auto-correcting scaffold lines (ScaffoldSketch §4.1).
+
+mod candidates;
+mod constraint;
+mod correct;
+mod exact;
+mod select;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use glam::DVec3;
+
+pub use constraint::{Constraint, End};
+pub use correct::{Corrected, correct_line};
+
+/// A straight line with two ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Where it begins.
+    pub a: DVec3,
+    /// Where it ends.
+    pub b: DVec3,
+}
+
+impl Line {
+    /// From `a` to `b`.
+    pub const fn new(a: DVec3, b: DVec3) -> Self {
+        Self { a, b }
+    }
+
+    /// Metres from end to end.
+    pub fn length(&self) -> f64 {
+        self.a.distance(self.b)
+    }
+
+    /// The unit vector from its beginning to its end; `None` where it has no length.
+    pub fn direction(&self) -> Option<DVec3> {
+        (self.b - self.a).try_normalize()
+    }
+
+    /// One of its ends.
+    pub fn end(&self, end: End) -> DVec3 {
+        match end {
+            End::A => self.a,
+            End::B => self.b,
+        }
+    }
+}
+
+/// What is drawn already.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scaffold {
+    /// Its lines.
+    pub lines: Vec<Line>,
+    /// Tick marks: keypoints on lines beside their ends and middles.
+    pub ticks: Vec<DVec3>,
+}
+
+impl Scaffold {
+    /// Ends and middles of the lines, then the tick marks.
+    pub fn keypoints(&self) -> impl Iterator<Item = DVec3> {
+        let of_lines = |l: &Line| [l.a, l.b, l.a.midpoint(l.b)];
+        self.lines
+            .iter()
+            .flat_map(of_lines)
+            .chain(self.ticks.iter().copied())
+    }
+}
+
+/// How near to a relation a line has to be drawn to be brought into it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineOptions {
+    /// Physical metres between an end and a keypoint or a line (§4.1: 5 cm).
+    pub distance: f64,
+    /// Radians off parallel or square (§4.1: 10°).
+    pub angle: f64,
+    /// Off equal length, as a share (§4.1: 25 %).
+    pub length: f64,
+    /// Whether the vertical is a direction like those of lines: to be parallel or square to.
+    pub vertical: bool,
+    /// Physical metres per metre of world: zooming in makes the thresholds finer.
+    pub metres_per_world: f64,
+}
+
+impl Default for LineOptions {
+    fn default() -> Self {
+        Self {
+            distance: 0.05,
+            angle: 10.0_f64.to_radians(),
+            length: 0.25,
+            vertical: true,
+            metres_per_world: 1.0,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Minimum variation of curvature over the tangent magnitudes (Eq. 9), by Levenberg–Marquardt.
+
+use glam::DVec3;
+use midair_curve::Spline;
+use nalgebra::DVector;
+
+use super::measure::Measure;
+
+/// What a curve goes through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its points, at least two.
+    pub points: Vec<DVec3>,
+    /// Its unit direction in each.
+    pub tangents: Vec<DVec3>,
+    /// Whether the last point is the first one again, and the curvature goes round.
+    pub closed: bool,
+}
+
+impl Curve {
+    /// How many segments it has.
+    pub fn segments(&self) -> usize {
+        self.points.len().saturating_sub(1)
+    }
+}
+
+/// A fair curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// The curve.
+    pub spline: Spline,
+    /// The magnitudes xᵢ,₁ and xᵢ,₂ of its tangents, in metres, two to a segment.
+    pub magnitudes: Vec<f64>,
+    /// What is left of Eq. 9, 1/m².
+    pub variation: f64,
+    /// How many steps were taken.
+    pub steps: usize,
+}
+
+/// Samples of the curvature per segment (§4.2.2 asks for one at least).
+const SAMPLES: usize = 10;
+const MOST_STEPS: usize = 60;
+
+/// The curve through `curve`'s points of least Σ (cᵢ − cᵢ₊₁)² (Eq. 9), begun at a third of each
+/// chord as the paper does. A curve without segments is empty.
+pub fn fit(curve: &Curve) -> Fitted {
+    let count = (SAMPLES * curve.segments() + SAMPLES).max(12);
+    fit_with(curve, count)
+}
+
+/// The same with `count` samples of the curvature over the whole curve.
+pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
+    let chords: Vec<f64> = curve
+        .points
+        .windows(2)
+        .map(|q| q[0].distance(q[1]).max(1e-9))
+        .collect();
+    let mut x: Vec<f64> = chords.iter().flat_map(|c| [c / 3.0; 2]).collect();
+    let mut fitted = Fitted {
+        spline: Spline::default(),
+        magnitudes: Vec::new(),
+        variation: 0.0,
+        steps: 0,
+    };
+    if curve.segments() == 0 {
+        return fitted;
+    }
+    let mut measure = Measure::new(curve, count.max(6));
+    let mut value = measure.value(&x);
+    let mut damping = 1e-3;
+    let mut trial = x.clone();
+    while fitted.steps < MOST_STEPS {
+        fitted.steps += 1;
+        let (residuals, jacobian) = measure.linearised(&x);
+        let matrix = jacobian.tr_mul(&jacobian);
+        let gradient = jacobian.tr_mul(&residuals);
+        let mut improved = false;
+        let mut gained = 0.0;
+        for _ in 0..12 {
+            let mut damped = matrix.clone();
+            for i in 0..x.len() {
+                damped[(i, i)] += damping * (matrix[(i, i)] + 1e-12);
+            }
+            let Some(step): Option<DVector<f64>> = damped.cholesky().map(|c| c.solve(&gradient))
+            else {
+                damping *= 10.0;
+                continue;
+            };
+            for i in 0..x.len() {
+                // A tangent never turns round and never outgrows its segment tenfold.
+                let chord = chords[i / 2];
+                trial[i] = (x[i] - step[i]).clamp(0.01 * chord, 10.0 * chord);
+            }
+            let next = measure.value(&trial);
+            if next < value {
+                gained = (value - next) / value.max(1e-300);
+                (value, improved) = (next, true);
+                x.copy_from_slice(&trial);
+                damping = (damping * 0.2).max(1e-12);
+                break;
+            }
+            damping *= 6.0;
+        }
+        if !improved || gained < 1e-6 {
+            break;
+        }
+    }
+    for (i, x) in x.chunks_mut(2).enumerate() {
+        if let Some(arc) = arc(curve, i).filter(|a| x.iter().all(|m| (m / a - 1.0).abs() < 0.02)) {
+            x.fill(arc);
+        }
+    }
+    fitted.spline = super::spline(curve, &x);
+    fitted.magnitudes = x;
+    fitted.variation = value;
+    fitted
+}
+
+/// The magnitude with which a segment is rounder than that of least variation, where its ends and
+/// tangents are those of a circular arc: 0.03 % off a quarter of a circle instead of 0.08 %.
+fn arc(curve: &Curve, segment: usize) -> Option<f64> {
+    let (q, d) = (
+        &curve.points[segment..=segment + 1],
+        &curve.tangents[segment..=segment + 1],
+    );
+    let chord = (q[1] - q[0]).try_normalize()?;
+    let mirrored = chord * (2.0 * d[0].dot(chord)) - d[0];
+    let half = d[0].angle_between(chord);
+    (mirrored.distance(d[1]) < 1e-6 && half > 1e-6 && half < 1.1).then(|| {
+        let radius = q[0].distance(q[1]) / (2.0 * half.sin());
+        4.0 / 3.0 * (0.5 * half).tan() * radius
+    })
+}
