@@ -6,6 +6,7 @@ mod gamepad;
 mod holding;
 mod operands;
 mod oracle;
+mod pad_session;
 mod shapes;
 mod studio;
 mod training;
