@@ -4,6 +4,7 @@
 mod desk;
 mod gamepad;
 mod holding;
+mod keyboard;
 mod operands;
 mod oracle;
 mod pad_session;

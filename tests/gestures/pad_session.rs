@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use bevy::input::gamepad::GamepadButton as Button;
-use bevy::math::{Vec2, Vec3};
-use midair::{Stage, app, probe};
+use bevy::math::Vec3;
+use midair::{Stage, probe};
 use midair_document::ObjectId;
 use midair_mesh::check;
 use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};

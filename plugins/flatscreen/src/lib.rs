@@ -5,6 +5,7 @@
 //! keeps what it holds; Tab swaps them.
 
 pub mod bindings;
+mod controls_panel;
 pub mod focus;
 mod gamepad;
 mod keys;
@@ -45,7 +46,7 @@ impl Plugin for FlatscreenPlugin {
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
             )
-            .add_plugins(bindings::plugin)
+            .add_plugins((bindings::plugin, controls_panel::plugin))
             .add_systems(Startup, orbit::spawn)
             .add_systems(
                 Update,

@@ -6,6 +6,7 @@ mod file;
 mod keep;
 mod listen;
 mod part;
+mod rebind;
 mod table;
 
 use bevy::prelude::*;
@@ -16,6 +17,7 @@ pub use control::{Context, Control, Group};
 pub use file::FileFault;
 pub use listen::{Attention, Controls};
 pub use part::{Device, Part};
+pub(crate) use rebind::{Asked, Rebind, Rebinding};
 pub use table::Bindings;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -23,6 +25,8 @@ pub(crate) fn plugin(app: &mut App) {
         .init_resource::<Bindings>()
         .init_resource::<Attention>()
         .init_resource::<Controls>()
+        .init_resource::<Asked>()
+        .init_resource::<Rebinding>()
         .add_systems(
             PreUpdate,
             leafwing_input_manager::systems::clear_central_input_store
@@ -31,7 +35,9 @@ pub(crate) fn plugin(app: &mut App) {
         )
         .add_systems(
             PreUpdate,
-            listen::listen
+            // What is bound anew is not heard before its key is up.
+            (rebind::rebind, listen::listen)
+                .chain()
                 .in_set(InputManagerSystem::Update)
                 .after(InputManagerSystem::Unify),
         );

@@ -166,7 +166,6 @@ const KEYS: &[(&str, KeyCode, &str)] = &[
 ];
 
 impl Part {
-    #[cfg(test)]
     /// Every part of a device that has a name.
     pub(super) fn all(device: Device) -> Vec<Self> {
         match device {

@@ -8,7 +8,7 @@ use midair_studio::{
 };
 
 use super::{Focus, Spot, Typing, map};
-use crate::bindings::{Control, Controls, Device};
+use crate::bindings::{Attention, Control, Controls, Device};
 
 /// Steps a second of a slider at full deflection of the stick.
 const SLIDES: f32 = 30.0;
@@ -18,7 +18,7 @@ type Primary<'w, 's> =
     Query<'w, 's, (&'static mut EguiContext, &'static mut EguiInput), With<PrimaryEguiContext>>;
 
 pub(crate) fn drive(
-    controls: Res<Controls>,
+    (controls, attention): (Res<Controls>, Res<Attention>),
     mouse: Res<ButtonInput<MouseButton>>,
     time: Res<Time>,
     panels: Res<Panels>,
@@ -29,6 +29,13 @@ pub(crate) fn drive(
     let Ok((mut context, mut input)) = primary.single_mut() else {
         return;
     };
+    if attention.rebinding {
+        // The key is meant for the list alone.
+        input
+            .events
+            .retain(|e| !matches!(e, egui::Event::Key { .. } | egui::Event::Text(_)));
+        return;
+    }
     let ctx = context.get_mut().clone();
     let focus = focus.bypass_change_detection();
     // The mouse says by itself where it works.
@@ -166,6 +173,7 @@ impl Focus {
                 steps.push(along);
             }
         }
+        let mut tabs = Vec::new();
         let (text, slider) = (self.is_text(), self.is_slider());
         input.events.retain(|event| {
             let egui::Event::Key {
@@ -177,6 +185,10 @@ impl Focus {
             else {
                 return true;
             };
+            if *key == egui::Key::Tab && !modifiers.command && !modifiers.alt {
+                tabs.push(if modifiers.shift { -1 } else { 1 });
+                return false;
+            }
             let along = match key {
                 egui::Key::ArrowUp if !slider || text => egui::vec2(0.0, -1.0),
                 egui::Key::ArrowDown if !slider || text => egui::vec2(0.0, 1.0),
@@ -190,6 +202,12 @@ impl Focus {
             steps.push(along);
             false
         });
+        for by in tabs {
+            if let Some(spot) = self.after(by) {
+                self.give(ctx, spot);
+                show(input, spot);
+            }
+        }
         for along in steps {
             let (Some(from), Some(region)) = (self.spot, self.region()) else {
                 return;
@@ -199,6 +217,21 @@ impl Focus {
                 show(input, spot);
             }
         }
+    }
+
+    /// The widget after or before the one that has the focus, through all panels and around; a menu
+    /// keeps it.
+    fn after(&self, by: isize) -> Option<Spot> {
+        let only = self.region().filter(|r| r.name == "popup");
+        let spots: Vec<_> = match only {
+            Some(region) => region.spots.clone(),
+            None => self.regions.iter().flat_map(|r| r.spots.clone()).collect(),
+        };
+        let now = spots
+            .iter()
+            .position(|s| Some(s.id) == self.spot.map(|s| s.id))?;
+        let to = (now as isize + by).rem_euclid(spots.len() as isize);
+        spots.get(to as usize).copied()
     }
 
     /// The stick moves what slides.

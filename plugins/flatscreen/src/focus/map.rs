@@ -81,6 +81,24 @@ impl Map {
                 self.push("popup", true, true, spots);
             }
         }
+        // Whatever a plugin draws elsewhere is reached as well.
+        let known: Vec<Id> = self
+            .regions
+            .iter()
+            .flat_map(|r| &r.spots)
+            .map(|s| s.id)
+            .collect();
+        let mut layers: Vec<LayerId> = self
+            .ctx
+            .viewport(|v| v.this_pass.widgets.layer_ids().collect());
+        layers.sort_by_key(|l| (l.order, l.id.value()));
+        let rest = layers
+            .into_iter()
+            .filter(|l| l.order < Order::Tooltip)
+            .flat_map(|l| self.spots(l, 0))
+            .filter(|s| !known.contains(&s.id))
+            .collect();
+        self.push("rest", false, false, rest);
         self.regions
     }
 

@@ -9,6 +9,15 @@ use crate::bindings::{Controls, Device};
 use crate::focus::Focus;
 use crate::pointer::Pointer;
 
+/// The hand that leads unless it was swapped.
+pub(crate) struct Usual(Side);
+
+impl Default for Usual {
+    fn default() -> Self {
+        Self(Side::Right)
+    }
+}
+
 pub(crate) fn lead(
     controls: Res<Controls>,
     settings: Res<Settings>,
@@ -16,6 +25,7 @@ pub(crate) fn lead(
     mut focus: ResMut<Focus>,
     mut pad: ResMut<Pad>,
     mut notices: ResMut<Notices>,
+    mut usual: Local<Usual>,
 ) {
     let connected = controls.pad().is_some();
     if std::mem::replace(&mut pad.connected, connected) && !connected {
@@ -31,8 +41,11 @@ pub(crate) fn lead(
         pad.latched = [false; 2];
         focus.leave();
     }
-    if settings.is_changed() && !pad.holds() && pad.leading != settings.hands.main() {
-        pad.leading = settings.hands.main();
+    let main = settings.hands.main();
+    if main != usual.0 && !pad.holds() && !pointer.holds() {
+        usual.0 = main;
+        pad.leading = main;
+        pointer.leading = main;
     }
     match controls.device() {
         Device::Pad if !pad.leads && !pointer.holds() => {
