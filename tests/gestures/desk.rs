@@ -8,6 +8,7 @@ use bevy::input::gamepad::{
     RawGamepadAxisChangedEvent, RawGamepadButtonChangedEvent, RawGamepadEvent,
 };
 use bevy::input::keyboard::{Key, KeyboardInput, NativeKey};
+use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::PrimaryWindow;
@@ -264,6 +265,33 @@ impl Desk {
             _ => Key::Unidentified(NativeKey::Unidentified),
         };
         self.strike(&[(code, logical)]);
+    }
+
+    /// The pointer is there, in pixels of the window.
+    pub fn cursor(&mut self, to: Vec2) {
+        let window = self.window;
+        let world = self.app.world_mut();
+        let mut shown = world.get_mut::<Window>(window).unwrap();
+        let before = shown.cursor_position();
+        shown.set_cursor_position(Some(to));
+        world.write_message(CursorMoved {
+            window,
+            position: to,
+            delta: before.map(|b| to - b),
+        });
+    }
+
+    pub fn mouse(&mut self, button: MouseButton, down: bool) {
+        let window = self.window;
+        self.app.world_mut().write_message(MouseButtonInput {
+            button,
+            state: if down {
+                ButtonState::Pressed
+            } else {
+                ButtonState::Released
+            },
+            window,
+        });
     }
 
     /// Where a point of the world is seen, in metres right and up of the middle and in front of the eye.

@@ -281,3 +281,86 @@ fn undo_repeats_while_it_is_held() {
     desk.up(Button::LeftTrigger);
     assert_eq!(steps(&desk), left + 1);
 }
+
+#[test]
+fn the_ring_of_modes_is_held_open_and_chooses_when_let_go() {
+    let elsewhere = midair_studio::tools::ToolId::new("test/elsewhere");
+    let mut desk = Desk::with(|app| {
+        use midair_studio::tools::{AddTool, Tool, ToolId};
+        app.add_tool(Tool {
+            id: ToolId::new("test/elsewhere"),
+            name: "Elsewhere",
+            about: "Nothing",
+            order: 90,
+        });
+    });
+    let mode = |d: &Desk| {
+        let tools = d.world().resource::<midair_studio::tools::Tools>();
+        tools.active().unwrap().id.clone()
+    };
+    let first = mode(&desk);
+    assert_ne!(first, elsewhere);
+    desk.plug();
+    // Held, it opens the ring and not the library; with two modes the second is below.
+    desk.down(Button::Start);
+    desk.wait(45);
+    let hand = desk.hand(Side::Right);
+    desk.stick(false, Vec2::NEG_Y);
+    desk.wait(3);
+    desk.up(Button::Start);
+    desk.stick(false, Vec2::ZERO);
+    desk.wait(2);
+    assert_eq!(mode(&desk), elsewhere);
+    assert!(!desk.is_open("library"));
+    assert!(
+        desk.hand(Side::Right).distance(hand) < 1e-4,
+        "the stick was the ring's"
+    );
+    // By keyboard: Q and an arrow.
+    use bevy::input::keyboard::{Key, NativeKey};
+    let unnamed = Key::Unidentified(NativeKey::Unidentified);
+    desk.key(KeyCode::KeyQ, unnamed.clone(), true);
+    desk.wait(3);
+    desk.strike_one(KeyCode::ArrowUp);
+    desk.key(KeyCode::KeyQ, unnamed, false);
+    desk.wait(3);
+    assert_eq!(mode(&desk), first);
+}
+
+#[test]
+fn the_sticks_turn_the_view_about_the_hand_and_the_hand_in_depth() {
+    let mut desk = Desk::new();
+    desk.plug();
+    let id = desk.take("Cube");
+    let hand = desk.hand(Side::Right);
+    let before = desk.seen(hand);
+    desk.push(true, Vec2::new(0.8, 0.3), 30);
+    let after = desk.seen(hand);
+    assert!(desk.hand(Side::Right).distance(hand) < 1e-4);
+    assert!(
+        before.distance(after) < 2e-3,
+        "it stays on its place: {before} {after}"
+    );
+    // With LT the held thing goes away and turns.
+    desk.down(Button::RightTrigger);
+    let hand = desk.hand(Side::Right);
+    let near = desk.seen(hand).z;
+    desk.down(Button::LeftTrigger2);
+    desk.push(false, Vec2::Y, 20);
+    desk.push(true, Vec2::X, 30);
+    desk.up(Button::LeftTrigger2);
+    desk.up(Button::RightTrigger);
+    desk.wait(2);
+    let placed = desk.document().object(id).unwrap().placement;
+    let far = desk.seen(desk.hand(Side::Right)).z;
+    assert!(far > near + 0.05, "{near} {far}");
+    let turned = placed.rotation.angle_between(Quat::IDENTITY);
+    assert!((0.3..1.2).contains(&turned), "{turned}");
+    // Y held shows the work, pressed twice the right stick deletes.
+    desk.down(Button::RightThumb);
+    desk.up(Button::RightThumb);
+    desk.down(Button::RightThumb);
+    desk.up(Button::RightThumb);
+    desk.wait(2);
+    assert_eq!(desk.document().len(), 0);
+}

@@ -2,6 +2,7 @@
 //! against an exact boolean.
 
 mod desk;
+mod fuzz;
 mod gamepad;
 mod holding;
 mod keyboard;

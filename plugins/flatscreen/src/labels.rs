@@ -4,11 +4,14 @@ use bevy::color::ColorToPacked;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
-    hands::{Hands, Side},
+    hands::{Action, Hands, Side},
     project::{Project, Shelf},
     show::{Cues, ObjectMap},
 };
 
+use crate::bindings::{Bindings, Controls};
+use crate::gamepad::Pad;
+use crate::keys::key_name;
 use crate::orbit::Orbit;
 use crate::panels::Screen;
 use crate::pointer::Pointer;
@@ -70,6 +73,7 @@ pub(crate) fn empty(
     project: Res<Project>,
     shelf: Res<Shelf>,
     screen: Res<Screen>,
+    (controls, bindings): (Res<Controls>, Res<Bindings>),
 ) -> Result {
     let ctx = contexts.ctx_mut()?;
     let Some(view) = screen
@@ -82,13 +86,14 @@ pub(crate) fn empty(
         .layer_painter(egui::LayerId::background())
         .with_clip_rect(view);
     let first = if shelf.open {
-        "Pick a shape to begin"
+        "Pick a shape to begin".to_owned()
     } else {
-        "Press L for the library"
+        let key = key_name(Action::Library, &bindings, controls.device());
+        format!("Press {key} for the library")
     };
     let at = egui::pos2(view.center().x, view.top() + 0.3 * view.height());
     for (text, size, down, colour) in [
-        (first, 24.0, 0.0, egui::Color32::from_gray(0xec)),
+        (first.as_str(), 24.0, 0.0, egui::Color32::from_gray(0xec)),
         (
             "or drop a mesh or a document here",
             15.0,
@@ -112,12 +117,17 @@ pub(crate) fn empty(
 pub(crate) fn hands(
     mut gizmos: Gizmos,
     hands: Res<Hands>,
-    pointer: Res<Pointer>,
+    (pointer, pad): (Res<Pointer>, Res<Pad>),
     eye: Single<&Transform, With<Orbit>>,
 ) {
     for side in Side::BOTH {
-        let leads = side == pointer.leading;
-        if !leads && !pointer.is_latched(side) && !pointer.stretching {
+        let (leading, latched, holds) = if pad.leads() {
+            (pad.leading(), pad.is_latched(side), pad.holds())
+        } else {
+            (pointer.leading, pointer.is_latched(side), pointer.holds())
+        };
+        let leads = side == leading;
+        if !leads && !latched && !pointer.stretching {
             continue;
         }
         let tip = hands.get(side).pose.position;
@@ -129,7 +139,7 @@ pub(crate) fn hands(
         // The same size on screen wherever it is.
         let size = 0.003 * tip.distance(eye.translation);
         gizmos.sphere(tip, size, colour);
-        if pointer.holds() || pointer.is_latched(side) {
+        if holds || latched || pad.leads() {
             gizmos.line(tip, tip.with_y(0.0), colour.with_alpha(0.5));
             gizmos.circle(
                 Isometry3d::new(tip.with_y(0.001), Quat::from_rotation_arc(Vec3::Z, Vec3::Y)),

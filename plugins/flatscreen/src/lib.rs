@@ -8,6 +8,7 @@ pub mod bindings;
 mod controls_panel;
 pub mod focus;
 mod gamepad;
+mod hints;
 mod keys;
 mod labels;
 mod orbit;
@@ -89,13 +90,13 @@ impl Plugin for FlatscreenPlugin {
 /// Where keys go from the next frame on.
 fn attend(
     screen: Res<panels::Screen>,
-    (focus, typing): (Res<focus::Focus>, Res<focus::Typing>),
+    typing: Res<focus::Typing>,
     pointer: Res<Pointer>,
     mut attention: ResMut<bindings::Attention>,
 ) {
     attention.set_if_neq(bindings::Attention {
         text: screen.is_text(),
-        panel: focus.is_inside(),
+        panel: screen.is_typing(),
         keyboard: typing.open,
         stretching: pointer.stretching,
         ..*attention

@@ -80,9 +80,8 @@ pub(crate) fn spawn(mut commands: Commands, adapter: Option<Res<RenderAdapterInf
 }
 
 pub(crate) fn steer(
-    (buttons, keys, scroll, mut moved): (
-        Res<ButtonInput<MouseButton>>,
-        Res<ButtonInput<KeyCode>>,
+    (controls, scroll, mut moved): (
+        Res<Controls>,
         Res<AccumulatedMouseScroll>,
         MessageReader<CursorMoved>,
     ),
@@ -97,15 +96,14 @@ pub(crate) fn steer(
     let height = window.map_or(720.0, |w| w.height().max(1.0));
     let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
     let panel = screen.covers(window.and_then(Window::cursor_position));
-    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
-    let alt = keys.any_pressed([KeyCode::AltLeft, KeyCode::AltRight]);
-    let around = [MouseButton::Middle, MouseButton::Right];
-    let began = buttons.any_just_pressed(around) || alt && buttons.just_pressed(MouseButton::Left);
+    let pans = controls.pressed(Control::Pan);
+    let began = [Control::Orbit, Control::Pan]
+        .into_iter()
+        .any(|c| controls.just_pressed(c));
     // What began in the view goes on over the panels, and the other way about.
-    *steering = buttons.any_pressed(around.into_iter().chain([MouseButton::Left]))
-        && (*steering || began && !panel);
+    *steering = (pans || controls.pressed(Control::Orbit)) && (*steering || began && !panel);
     if *steering && travelled != Vec2::ZERO {
-        if shift {
+        if pans {
             // What lies at the focus stays under the pointer.
             let metres = 2.0 * orbit.distance * (0.5 * FIELD_OF_VIEW).tan() / height;
             let delta = transform.rotation * Vec3::new(-travelled.x, travelled.y, 0.0) * metres;

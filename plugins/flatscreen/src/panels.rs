@@ -6,16 +6,15 @@ use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     command::Command,
     evaluate::Evaluations,
-    hands::Action,
     notice::Notices,
     panel::{self, Bar, Dock, PanelInfo, Panels},
     project::Project,
-    tools::{HintKey, Hints},
 };
 
-use crate::bindings::{Bindings, Control, Controls, Device};
+use crate::bindings::Controls;
 use crate::focus::{Focus, Map};
 use crate::gamepad::Pad;
+use crate::hints;
 use crate::keys::key_name;
 use crate::pointer::Pointer;
 
@@ -143,7 +142,7 @@ fn draw(
         ui.add_space(4.0);
         panel::operands(ui, world.resource::<Project>().document());
         let (bindings, device) = (world.resource(), world.resource::<Controls>().device());
-        let (hints, more) = with_keys(world.resource(), world.resource(), bindings, device);
+        let (hints, more) = hints::with_keys(world, focus.is_inside(), bindings, device);
         let names = |action| key_name(action, bindings, device);
         panel::hints(ui, &hints, &names, &more);
         ui.add_space(4.0);
@@ -287,70 +286,6 @@ fn notices(ctx: &egui::Context, view: egui::Rect, world: &World) {
                     }
                 });
         });
-}
-
-/// The tool's hints, with what only this way in has.
-fn with_keys(
-    hints: &Hints,
-    pointer: &Pointer,
-    bindings: &Bindings,
-    device: Device,
-) -> (Hints, Vec<(String, String)>) {
-    let mut hints = hints.clone();
-    let named = |control| bindings.label(control, device);
-    let joined = |controls: &[Control]| {
-        let names: Vec<_> = controls.iter().map(|&c| named(c)).collect();
-        names.join(" ")
-    };
-    let more: Vec<(String, &str)> = if pointer.stretching {
-        hints.buttons.clear();
-        vec![
-            ("move".to_owned(), "larger or smaller"),
-            (
-                joined(&[
-                    Control::AxisX,
-                    Control::AxisY,
-                    Control::AxisZ,
-                    Control::AxisAll,
-                ]),
-                "along which axis, all",
-            ),
-            (named(Control::Act), "done"),
-            (named(Control::Cancel), "put it back"),
-        ]
-    } else if pointer.holds() {
-        // The other hand is a key away.
-        hints
-            .buttons
-            .retain(|h| h.action != HintKey::Action(Action::Grab));
-        vec![
-            ("wheel".to_owned(), "nearer, farther"),
-            (named(Control::Turn), "turn"),
-            (named(Control::SwapHands), "other hand"),
-        ]
-    } else if pointer.is_over() {
-        vec![
-            (
-                joined(&[
-                    Control::MarkUnion,
-                    Control::MarkIntersect,
-                    Control::MarkSubtract,
-                ]),
-                "mark ∪ ∩ −",
-            ),
-            (named(Control::Unmark), "unmark"),
-            (named(Control::Stretch), "stretch"),
-        ]
-    } else {
-        vec![
-            (named(Control::Orbit), "orbit"),
-            (named(Control::Pan), "pan"),
-            ("wheel".to_owned(), "zoom"),
-            (named(Control::FrameSelection), "show all"),
-        ]
-    };
-    let more = more.into_iter().map(|(key, does)| (key, does.to_owned()));
-    (hints, more.collect())
 }
 
 /// The window says what one works on and whether it is saved.

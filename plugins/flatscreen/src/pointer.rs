@@ -8,8 +8,10 @@ use midair_studio::{
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
     pick::{self, Proxy, Touch},
     project::{Project, Shelf},
+    settings::Settings,
 };
 
+use crate::bindings::{Control, Controls, Device};
 use crate::orbit::{Orbit, lines};
 use crate::panels::Screen;
 use crate::place;
@@ -98,9 +100,9 @@ impl Pointer {
 }
 
 pub(crate) fn point(
-    (buttons, keys, scroll, mut moved): (
-        Res<ButtonInput<MouseButton>>,
-        Res<ButtonInput<KeyCode>>,
+    (controls, settings, scroll, mut moved): (
+        Res<Controls>,
+        Res<Settings>,
         Res<AccumulatedMouseScroll>,
         MessageReader<CursorMoved>,
     ),
@@ -119,18 +121,12 @@ pub(crate) fn point(
     let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
     let cursor = windows.iter().find_map(Window::cursor_position);
     let panel = screen.covers(cursor);
-    let typing = screen.is_typing();
-    let alt = keys.any_pressed([KeyCode::AltLeft, KeyCode::AltRight]);
-    let ctrl = keys.any_pressed([
-        KeyCode::ControlLeft,
-        KeyCode::ControlRight,
-        KeyCode::SuperLeft,
-        KeyCode::SuperRight,
-    ]);
-    // A tap that is over within one frame is still a tap.
-    let down = buttons.pressed(MouseButton::Left) || buttons.just_pressed(MouseButton::Left);
-    let started = buttons.just_pressed(MouseButton::Left) && !alt && !panel && !pointer.stretching;
-    if keys.just_pressed(KeyCode::Tab) && !typing && !alt && !pointer.stretching {
+    let down = |control| controls.pressed_on(control, Device::Keys);
+    let began = |control| controls.just_pressed(control) && down(control);
+    let free = !panel && !pointer.stretching;
+    let started = began(Control::Act) && free;
+    let grabs = began(Control::Grab) && free;
+    if controls.just_pressed(Control::SwapHands) && !pointer.stretching {
         let side = pointer.leading;
         // What is held while one swaps stays held.
         pointer.latched[side as usize] = pointer.grip.take().is_some();
@@ -144,7 +140,7 @@ pub(crate) fn point(
     let ray = cursor.and_then(|c| ray(camera, eye, c));
     if let Some(mut grip) = pointer.grip {
         // In the frame of the release too: it comes to rest where it was dragged to.
-        if keys.pressed(KeyCode::KeyR) && !typing {
+        if controls.pressed(Control::Turn) {
             let turn = Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
                 * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01);
             pointer.turn =
@@ -180,7 +176,7 @@ pub(crate) fn point(
                 let position = hit.map_or_else(|| on_ground(&ray, eye), |h| h.point);
                 // A small thing is touched from a fingertip's breadth away as well.
                 pointer.over = hit.is_some() || touch.get(side).is_some();
-                if started && pointer.over {
+                if grabs && pointer.over {
                     pointer.grip = cursor.map(|from| Grip {
                         depth: (position - eye.translation).dot(*eye.forward()),
                         from,
@@ -200,8 +196,8 @@ pub(crate) fn point(
     if !pointer.latched[other as usize] {
         pointer.poses[other as usize] = rest(eye, other);
     }
-    if !down {
-        pointer.acting = false;
+    pointer.acting &= down(Control::Act);
+    if !down(Control::Grab) {
         pointer.grip = None;
     }
     // Where it was picked there is no room: it goes where one looks.
@@ -221,14 +217,17 @@ pub(crate) fn point(
     let mut actions = ActionSet::NONE;
     actions.set(Action::Act, pointer.acting);
     actions.set(Action::Grab, pointer.grip.is_some());
-    if !keys.pressed(KeyCode::Enter) && !keys.pressed(KeyCode::NumpadEnter) {
-        pointer.enter_spent = false;
-    }
-    if !typing && !ctrl && !alt {
-        keyboard(&keys, &mut actions);
-        if pointer.enter_spent {
-            actions.set(Action::Finish, false);
-        }
+    pointer.enter_spent &= controls.pressed(Control::Finish);
+    for (control, action) in [
+        (Control::Finish, Action::Finish),
+        (Control::Delete, Action::Delete),
+        (Control::CrossUp, Action::Up),
+        (Control::CrossRight, Action::Right),
+        (Control::CrossDown, Action::Down),
+        (Control::CrossLeft, Action::Left),
+    ] {
+        let spent = control == Control::Finish && pointer.enter_spent;
+        actions.set(action, controls.pressed(control) && !spent);
     }
     for hand in Side::BOTH {
         let mut held = ActionSet::NONE;
@@ -239,17 +238,18 @@ pub(crate) fn point(
             swipe: None,
         };
     }
-    let tapped = |key| !typing && !ctrl && !alt && (keys.pressed(key) || keys.just_pressed(key));
-    // *Save* is the left hand's and *library* the right's: a key lends them the pointer's place.
-    if tapped(KeyCode::KeyE) && !pointer.stretching {
-        let frame = input.side(Side::Left);
+    // *Save* is one hand's and *library* the other's: a key lends them the pointer's place.
+    if controls.pressed(Control::SaveObject) && !pointer.stretching {
+        let frame = input.side(settings.hands.off());
         frame.pose = Some(pointer.poses[side as usize]);
         frame.down.set(Action::Save, true);
     }
-    if tapped(KeyCode::KeyL) {
-        input.side(Side::Right).down.set(Action::Library, true);
-    }
-    if tapped(KeyCode::Escape) {
+    let main = input.side(settings.hands.main());
+    main.down
+        .set(Action::Library, controls.pressed(Control::Library));
+    main.down
+        .set(Action::Modes, controls.pressed(Control::Modes));
+    if controls.pressed(Control::Cancel) {
         for hand in Side::BOTH {
             input.side(hand).down.set(Action::Cancel, true);
         }
@@ -259,22 +259,6 @@ pub(crate) fn point(
         position: eye.translation,
         rotation: eye.rotation,
     });
-}
-
-fn keyboard(keys: &ButtonInput<KeyCode>, down: &mut ActionSet) {
-    for (key, action) in [
-        (KeyCode::Enter, Action::Finish),
-        (KeyCode::NumpadEnter, Action::Finish),
-        (KeyCode::Delete, Action::Delete),
-        (KeyCode::ArrowUp, Action::Up),
-        (KeyCode::ArrowRight, Action::Right),
-        (KeyCode::ArrowDown, Action::Down),
-        (KeyCode::ArrowLeft, Action::Left),
-    ] {
-        if keys.pressed(key) || keys.just_pressed(key) {
-            down.set(action, true);
-        }
-    }
 }
 
 /// An empty hand hangs behind the eyes, where it touches and hides nothing.

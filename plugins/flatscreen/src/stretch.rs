@@ -1,10 +1,10 @@
-//! S: both hands grip what the pointer touches, and moving the pointer moves them apart.
+//! Both hands grip what the pointer touches, and moving the pointer moves them apart.
 
 use bevy::prelude::*;
 use midair_studio::hands::{Action, HandsInput, Pose, Side};
 
+use crate::bindings::{Control, Controls};
 use crate::orbit::Orbit;
-use crate::panels::Screen;
 use crate::pointer::Pointer;
 
 /// Metres between the hands when they take hold: both within reach of the same spot.
@@ -23,19 +23,15 @@ pub(crate) struct Stretching {
 
 pub(crate) fn stretch(
     mut stretching: Local<Option<Stretching>>,
-    keys: Res<ButtonInput<KeyCode>>,
-    buttons: Res<ButtonInput<MouseButton>>,
+    controls: Res<Controls>,
     mut moved: MessageReader<CursorMoved>,
-    screen: Res<Screen>,
     mut pointer: ResMut<Pointer>,
     eye: Single<&Transform, With<Orbit>>,
     mut input: ResMut<HandsInput>,
 ) {
     let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
-    let ctrl = keys.any_pressed([KeyCode::ControlLeft, KeyCode::ControlRight]);
     let Some(now) = stretching.as_mut() else {
-        let asked = keys.just_pressed(KeyCode::KeyS) && !ctrl && !screen.is_typing();
-        if asked && pointer.is_over() && !pointer.holds() {
+        if controls.just_pressed(Control::Stretch) && pointer.is_over() && !pointer.holds() {
             let begun = Stretching {
                 middle: pointer.pose(pointer.leading),
                 along: *eye.right(),
@@ -48,22 +44,22 @@ pub(crate) fn stretch(
         }
         return;
     };
-    let cancelled = keys.just_pressed(KeyCode::Escape);
-    let entered = keys.any_just_pressed([KeyCode::Enter, KeyCode::NumpadEnter]);
+    let cancelled = controls.just_pressed(Control::Cancel);
+    let entered = controls.just_pressed(Control::Finish);
     let done = cancelled
         || entered
-        || keys.just_pressed(KeyCode::KeyS)
-        || buttons.just_pressed(MouseButton::Left)
         // Undo takes the thing out of the hands.
-        || ctrl && keys.any_just_pressed([KeyCode::KeyZ, KeyCode::KeyY]);
+        || [Control::Stretch, Control::Act, Control::Undo, Control::Redo]
+            .into_iter()
+            .any(|c| controls.just_pressed(c));
     now.moved += travelled.x - travelled.y;
-    for (names, swipe) in [
-        ([KeyCode::KeyX, KeyCode::ArrowUp], Vec2::Y),
-        ([KeyCode::KeyY, KeyCode::ArrowRight], Vec2::X),
-        ([KeyCode::KeyZ, KeyCode::ArrowDown], Vec2::NEG_Y),
-        ([KeyCode::KeyA, KeyCode::ArrowLeft], Vec2::NEG_X),
+    for (control, swipe) in [
+        (Control::AxisX, Vec2::Y),
+        (Control::AxisY, Vec2::X),
+        (Control::AxisZ, Vec2::NEG_Y),
+        (Control::AxisAll, Vec2::NEG_X),
     ] {
-        if keys.any_just_pressed(names) && !ctrl {
+        if controls.just_pressed(control) {
             now.swipe = Some(swipe);
         }
     }

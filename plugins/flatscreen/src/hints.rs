@@ -1,0 +1,117 @@
+//! The bottom line: what each key or button does now, by the device that was used last.
+
+use bevy::prelude::*;
+use midair_studio::{
+    hands::Action,
+    tools::{HintKey, Hints},
+};
+
+use crate::bindings::{Bindings, Control, Device};
+use crate::gamepad::Pad;
+use crate::pointer::Pointer;
+
+/// The tool's hints, with what only this way in has.
+pub(crate) fn with_keys(
+    world: &World,
+    in_panels: bool,
+    bindings: &Bindings,
+    device: Device,
+) -> (Hints, Vec<(String, String)>) {
+    let mut hints = world.resource::<Hints>().clone();
+    let (pointer, pad) = (world.resource::<Pointer>(), world.resource::<Pad>());
+    let named = |control| bindings.label(control, device);
+    let joined = |controls: &[Control]| {
+        let names: Vec<_> = controls.iter().map(|&c| named(c)).collect();
+        names.join(" ")
+    };
+    let beside = |first, second| format!("{}+{}", named(first), named(second));
+    let more: Vec<(String, &str)> = if in_panels {
+        hints.begin("In the panels");
+        vec![
+            (panel_arrows(device).to_owned(), "move"),
+            (panel_press(bindings, device), "press"),
+            (named(Control::PanelNext), "next panel"),
+            (named(Control::PanelLeave), "back to the view"),
+        ]
+    } else if pad.leads() && pad.holds() {
+        vec![
+            (named(Control::HandStick), "move"),
+            (beside(Control::Deep, Control::HandStick), "depth, roll"),
+            (beside(Control::Deep, Control::ViewStick), "turn"),
+            (named(Control::SwapHands), "other hand"),
+        ]
+    } else if pad.leads() {
+        vec![
+            (named(Control::HandStick), "move"),
+            (named(Control::ViewStick), "orbit"),
+            (beside(Control::Deep, Control::HandStick), "depth"),
+            (beside(Control::Roam, Control::HandStick), "pan"),
+            (format!("hold {}", named(Control::SwapHands)), "show all"),
+            (named(Control::PanelNext), "panels"),
+        ]
+    } else if pointer.stretching {
+        hints.buttons.clear();
+        vec![
+            ("move".to_owned(), "larger or smaller"),
+            (
+                joined(&[
+                    Control::AxisX,
+                    Control::AxisY,
+                    Control::AxisZ,
+                    Control::AxisAll,
+                ]),
+                "along which axis, all",
+            ),
+            (named(Control::Act), "done"),
+            (named(Control::Cancel), "put it back"),
+        ]
+    } else if pointer.holds() {
+        // The other hand is a key away.
+        hints
+            .buttons
+            .retain(|h| h.action != HintKey::Action(Action::Grab));
+        vec![
+            ("wheel".to_owned(), "nearer, farther"),
+            (named(Control::Turn), "turn"),
+            (named(Control::SwapHands), "other hand"),
+        ]
+    } else if pointer.is_over() {
+        vec![
+            (
+                joined(&[
+                    Control::MarkUnion,
+                    Control::MarkIntersect,
+                    Control::MarkSubtract,
+                ]),
+                "mark ∪ ∩ −",
+            ),
+            (named(Control::Unmark), "unmark"),
+            (named(Control::Stretch), "stretch"),
+        ]
+    } else {
+        vec![
+            (named(Control::Orbit), "orbit"),
+            (named(Control::Pan), "pan"),
+            ("wheel".to_owned(), "zoom"),
+            (named(Control::FrameSelection), "show all"),
+        ]
+    };
+    let more = more.into_iter().map(|(key, does)| (key, does.to_owned()));
+    (hints, more.collect())
+}
+
+/// What moves the focus.
+fn panel_arrows(device: Device) -> &'static str {
+    match device {
+        Device::Keys => "Tab ↑ ↓ ← →",
+        Device::Pad => "D-pad",
+    }
+}
+
+/// What presses what has the focus.
+fn panel_press(bindings: &Bindings, device: Device) -> String {
+    match device {
+        Device::Keys => "Enter".to_owned(),
+        Device::Pad => bindings.label(Control::PanelPress, device),
+    }
+}
