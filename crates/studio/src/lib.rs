@@ -8,6 +8,7 @@ pub mod command;
 pub mod evaluate;
 pub mod hands;
 pub mod notice;
+pub mod objects;
 pub mod panel;
 pub mod pick;
 pub mod project;
@@ -64,6 +65,7 @@ impl Plugin for StudioPlugin {
             notice::plugin,
             command::plugin,
             project::plugin,
+            objects::plugin,
             evaluate::plugin,
             pick::plugin,
             show::plugin,

@@ -141,6 +141,8 @@ fn handle(
             Command::New => errands.start(Errand::New, &project, &places),
             Command::Restore => errands.start(Errand::Restore, &project, &places),
             Command::Dismiss => errands.start(Errand::Dismiss, &project, &places),
+            // The room of objects reads it.
+            Command::Objects(_) => {}
             // The tool itself reads it.
             Command::Tool { .. } => {}
         }

@@ -72,6 +72,8 @@ pub enum Command {
     Restore,
     /// Leaves that work aside for good.
     Dismiss,
+    /// Something done with objects: selected, grouped, hidden, copied, placed, coloured.
+    Objects(crate::objects::Ask),
     /// Changes one of the [`Settings`](crate::settings::Settings) by its dotted name.
     Set {
         /// For instance `look.room`.
