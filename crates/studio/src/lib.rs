@@ -15,6 +15,7 @@ pub mod project;
 pub mod settings;
 pub mod show;
 pub mod tools;
+pub mod units;
 
 use bevy::prelude::*;
 

@@ -1,7 +1,14 @@
 //! Shortcuts: what keys and buttons ask of the studio as a whole.
 
 use bevy::prelude::*;
-use midair_studio::{command::Command, hands::Action, panel::Panels, tools::Tools};
+use midair_studio::{
+    command::Command,
+    hands::Action,
+    objects::Ask,
+    panel::Panels,
+    project::{Project, Selection},
+    tools::Tools,
+};
 
 use crate::bindings::{Bindings, Control, Controls, Device};
 
@@ -63,6 +70,8 @@ pub(crate) fn commands(
     controls: Res<Controls>,
     tools: Res<Tools>,
     panels: Res<Panels>,
+    project: Res<Project>,
+    selection: Res<Selection>,
     mut commands: MessageWriter<Command>,
 ) {
     for (control, command) in [
@@ -92,6 +101,25 @@ pub(crate) fn commands(
                 ask: mark.to_owned(),
             });
         }
+    }
+    for (control, ask) in [
+        (Control::SelectAll, Ask::SelectAll),
+        (Control::Duplicate, Ask::Duplicate),
+        (Control::Group, Ask::Group),
+        (Control::Ungroup, Ask::Ungroup),
+        (Control::ShowAll, Ask::ShowAll),
+    ] {
+        if controls.just_pressed(control) {
+            commands.write(Command::Objects(ask));
+        }
+    }
+    if controls.just_pressed(Control::Hide) {
+        let document = project.document();
+        let shown = selection.0.iter().any(|&id| document.is_visible(id));
+        commands.write(Command::Objects(Ask::Visible {
+            ids: Vec::new(),
+            visible: !shown,
+        }));
     }
     let modes = [
         Control::Mode1,

@@ -11,7 +11,7 @@ use super::Axis;
 /// along one axis.
 pub fn mirrored(placement: &Placement, axis: Axis) -> Placement {
     let flip = Vec3::ONE - 2.0 * axis.unit();
-    let Quat { x, y, z, w } = placement.rotation;
+    let [x, y, z, w] = placement.rotation.to_array();
     // M R M keeps the part of the axis along the normal and turns the others round.
     let v = -Vec3::new(x, y, z) * flip;
     Placement {

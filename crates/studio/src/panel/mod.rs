@@ -9,6 +9,8 @@ mod keyboard;
 mod library;
 mod notices;
 mod objects;
+mod outline;
+mod properties;
 mod registry;
 mod ring;
 mod style;
@@ -28,16 +30,41 @@ pub use bevy_egui::egui;
 pub use egui_phosphor::regular as icon;
 
 pub(crate) fn plugin(app: &mut bevy::prelude::App) {
-    app.init_resource::<Panels>().add_panel(
-        PanelInfo {
-            id: "library",
-            title: "Library",
-            icon: icon::BOOKS,
-            dock: Dock::Left,
-            order: 0,
-            open: false,
-            in_bar: true,
-        },
-        library::LibraryPanel::default(),
-    );
+    app.init_resource::<Panels>()
+        .add_panel(
+            PanelInfo {
+                id: "library",
+                title: "Library",
+                icon: icon::BOOKS,
+                dock: Dock::Left,
+                order: 0,
+                open: false,
+                in_bar: true,
+            },
+            library::LibraryPanel::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "outline",
+                title: "Outline",
+                icon: icon::TREE_STRUCTURE,
+                dock: Dock::Right,
+                order: 10,
+                open: false,
+                in_bar: true,
+            },
+            outline::Outline::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "properties",
+                title: "Properties",
+                icon: icon::SLIDERS_HORIZONTAL,
+                dock: Dock::Right,
+                order: 11,
+                open: false,
+                in_bar: true,
+            },
+            properties::Properties::default(),
+        );
 }

@@ -8,6 +8,7 @@ mod hands;
 mod keep;
 mod look;
 mod patch;
+mod units;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,7 @@ pub use hands::HandsSettings;
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
+pub use units::UnitSettings;
 
 /// Everything a person can set. A field that a file lacks has its default.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -25,10 +27,12 @@ pub struct Settings {
     pub look: LookSettings,
     /// Which hand leads.
     pub hands: HandsSettings,
+    /// In what lengths are read and written.
+    pub units: UnitSettings,
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
-const SHAPING: &[&str] = &["snap", "hands", "symmetry", "units"];
+const SHAPING: &[&str] = &["snap", "hands", "symmetry"];
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Settings>();

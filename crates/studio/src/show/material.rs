@@ -1,31 +1,122 @@
-use bevy::{platform::collections::HashMap, prelude::*};
+use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::Face};
+use midair_document::Object;
 
 use super::{Cue, Cues, ObjectEntity, Tint};
+use crate::project::Project;
 
 /// One material per look, made when first needed.
 #[derive(Resource, Default)]
 struct Looks(HashMap<Look, Handle<StandardMaterial>>);
 
+/// A material a person can choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialInfo {
+    /// Its name in documents, never changed.
+    pub id: &'static str,
+    /// What people read.
+    pub name: &'static str,
+    /// 0 as a mirror, 1 as chalk.
+    pub roughness: f32,
+    /// 0 or 1.
+    pub metallic: f32,
+    /// How much of it one sees through.
+    pub clear: f32,
+}
+
+/// The materials for judging form; the first is every object's that has none of its own.
+pub const MATERIALS: &[MaterialInfo] = &[
+    MaterialInfo {
+        id: "matte",
+        name: "Matte",
+        roughness: 0.62,
+        metallic: 0.0,
+        clear: 0.0,
+    },
+    MaterialInfo {
+        id: "clay",
+        name: "Clay",
+        roughness: 0.95,
+        metallic: 0.0,
+        clear: 0.0,
+    },
+    MaterialInfo {
+        id: "gloss",
+        name: "Gloss",
+        roughness: 0.18,
+        metallic: 0.0,
+        clear: 0.0,
+    },
+    MaterialInfo {
+        id: "metal",
+        name: "Metal",
+        roughness: 0.32,
+        metallic: 1.0,
+        clear: 0.0,
+    },
+    MaterialInfo {
+        id: "glass",
+        name: "Glass",
+        roughness: 0.08,
+        metallic: 0.0,
+        clear: 0.65,
+    },
+];
+
+/// What decides how a thing looks; things that look alike share one material.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Look {
     tint: Tint,
     touched: bool,
     selected: bool,
+    own: Option<[u8; 3]>,
+    /// Which of [`MATERIALS`].
+    material: usize,
+    /// A mirror image shows the other side of its triangles.
+    mirrored: bool,
 }
 
 impl Look {
+    fn of(object: &Object, cue: &Cue) -> Self {
+        let named = |m: &MaterialInfo| Some(m.id) == object.material.as_deref();
+        Self {
+            tint: cue.tint,
+            touched: cue.touched,
+            selected: cue.selected,
+            own: object.colour.map(|c| c.0),
+            // A material of a plugin that is missing is shown as matte, and kept.
+            material: MATERIALS.iter().position(named).unwrap_or(0),
+            mirrored: object.placement.scale.to_array().iter().product::<f32>() < 0.0,
+        }
+    }
+
     fn material(self) -> StandardMaterial {
-        let base = self.tint.colour();
+        // An operand's colour says what it does and comes before its own.
+        let base = match (self.tint, self.own) {
+            (Tint::Plain, Some([r, g, b])) => Color::srgb_u8(r, g, b),
+            (tint, _) => tint.colour(),
+        };
+        let info = MATERIALS[self.material];
         let glow = match (self.touched, self.selected) {
             (true, _) => 0.16,
             (false, true) => 0.07,
             (false, false) => 0.0,
         };
         StandardMaterial {
-            base_color: base,
+            base_color: base.with_alpha(1.0 - info.clear),
             emissive: base.to_linear() * glow,
-            perceptual_roughness: 0.62,
+            perceptual_roughness: info.roughness,
+            metallic: info.metallic,
             reflectance: 0.35,
+            alpha_mode: if info.clear > 0.0 {
+                AlphaMode::Blend
+            } else {
+                AlphaMode::Opaque
+            },
+            cull_mode: Some(if self.mirrored {
+                Face::Front
+            } else {
+                Face::Back
+            }),
             ..default()
         }
     }
@@ -39,6 +130,7 @@ pub(super) fn plugin(app: &mut App) {
 
 fn paint(
     cues: Res<Cues>,
+    project: Res<Project>,
     mut looks: ResMut<Looks>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut objects: Query<(&ObjectEntity, &mut MeshMaterial3d<StandardMaterial>)>,
@@ -46,11 +138,10 @@ fn paint(
     let plain = Cue::default();
     for (object, mut material) in &mut objects {
         let cue = cues.0.get(&object.0).unwrap_or(&plain);
-        let look = Look {
-            tint: cue.tint,
-            touched: cue.touched,
-            selected: cue.selected,
+        let Some(thing) = project.document().object(object.0) else {
+            continue;
         };
+        let look = Look::of(thing, cue);
         let wanted = looks
             .0
             .entry(look)

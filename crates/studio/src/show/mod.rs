@@ -13,6 +13,7 @@ use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
 pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
+pub use material::{MATERIALS, MaterialInfo};
 pub use room::{Room, RoomPlugin, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.

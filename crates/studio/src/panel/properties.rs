@@ -1,0 +1,395 @@
+//! The properties of what is selected: name, place, size, colour, material.
+
+use bevy::math::{EulerRot, Quat, Vec3};
+use bevy::prelude::World;
+use bevy_egui::egui::{self, Color32, DragValue, Ui};
+use midair_document::{Colour, Document, Kind, Object, ObjectId};
+use midair_field::Placement;
+use midair_mesh::Unit;
+
+use super::{Panel, icon};
+use crate::command::Command;
+use crate::objects::{Ask, Axis};
+use crate::project::{Project, Selection};
+use crate::settings::Settings;
+use crate::show::MATERIALS;
+use crate::units;
+
+/// What is being dragged or typed; sent once when it is let go.
+#[derive(Default)]
+pub(super) struct Properties {
+    /// The object whose numbers are in hand, and where they put it.
+    place: Option<(ObjectId, Numbers)>,
+    colour: Option<[u8; 3]>,
+    hex: Option<String>,
+    fault: Option<String>,
+    around: Option<u32>,
+}
+
+/// A place in the numbers a person reads: the chosen unit, degrees, factors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Numbers {
+    position: Vec3,
+    degrees: Vec3,
+    scale: Vec3,
+}
+
+impl Numbers {
+    fn of(placement: &Placement, unit: Unit) -> Self {
+        let (x, y, z) = placement.rotation.to_euler(EulerRot::XYZ);
+        Self {
+            position: placement.translation * unit.per_metre() as f32,
+            degrees: Vec3::new(x, y, z) * 180.0 / std::f32::consts::PI,
+            scale: placement.scale,
+        }
+    }
+
+    fn placement(&self, unit: Unit) -> Placement {
+        let r = self.degrees * std::f32::consts::PI / 180.0;
+        Placement {
+            translation: self.position * unit.metres() as f32,
+            rotation: Quat::from_euler(EulerRot::XYZ, r.x, r.y, r.z).normalize(),
+            scale: self.scale,
+        }
+    }
+}
+
+impl Panel for Properties {
+    fn show(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
+        let document = world.resource::<Project>().document();
+        let selection = &world.resource::<Selection>().0;
+        let unit = world.resource::<Settings>().units.length;
+        let mut ask = Vec::new();
+        let Some(first) = selection.first().and_then(|&id| document.object(id)) else {
+            ui.add_space(8.0);
+            ui.weak("Nothing is selected. Click an object, or its row in the outline.");
+            return;
+        };
+        egui::ScrollArea::vertical()
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                match selection.as_slice() {
+                    &[id] => {
+                        ui.strong(&first.name);
+                        self.place(ui, id, first, unit, &mut ask);
+                    }
+                    several => {
+                        ui.strong(format!("{} objects", several.len()));
+                    }
+                }
+                if let Some(size) = size(document, selection) {
+                    ui.horizontal(|ui| {
+                        ui.label("Size");
+                        ui.label(units::size(size, unit))
+                            .on_hover_text("Width, height, depth");
+                    });
+                }
+                ui.separator();
+                self.look(ui, document, selection, first, &mut ask);
+                ui.separator();
+                self.more(ui, &mut ask);
+            });
+        asks.extend(ask.into_iter().map(Command::Objects));
+    }
+}
+
+impl Properties {
+    fn place(
+        &mut self,
+        ui: &mut Ui,
+        id: ObjectId,
+        object: &Object,
+        unit: Unit,
+        ask: &mut Vec<Ask>,
+    ) {
+        let before = Numbers::of(&object.placement, unit);
+        let held = self.place.filter(|(of, _)| *of == id);
+        let mut now = held.map_or(before, |(_, n)| n);
+        let mut busy = false;
+        let mut row = |ui: &mut Ui, name: &str, values: &mut Vec3, speed: f32, suffix: &str| {
+            ui.label(name);
+            for (axis, value) in
+                ["X", "Y", "Z"]
+                    .into_iter()
+                    .zip([&mut values.x, &mut values.y, &mut values.z])
+            {
+                let drag = DragValue::new(value)
+                    .speed(speed)
+                    .max_decimals(3)
+                    .suffix(suffix);
+                let field = ui
+                    .add_enabled(!object.locked, drag)
+                    .on_hover_text(format!("{name} {axis}"));
+                busy |= field.dragged() || field.has_focus();
+            }
+            ui.end_row();
+        };
+        egui::Grid::new("place")
+            .num_columns(4)
+            .spacing([6.0, 6.0])
+            .show(ui, |ui| {
+                row(
+                    ui,
+                    "Position",
+                    &mut now.position,
+                    0.5e-3 * unit.per_metre() as f32,
+                    "",
+                );
+                row(ui, "Rotation", &mut now.degrees, 1.0, "°");
+                row(ui, "Scale", &mut now.scale, 0.01, "");
+            });
+        ui.weak(format!("in {unit}"));
+        // A scale of nothing would be no thing at all.
+        for axis in 0..3 {
+            if now.scale[axis].abs() < 1e-3 {
+                now.scale[axis] = 1e-3_f32.copysign(before.scale[axis]);
+            }
+        }
+        self.place = if busy {
+            Some((id, now))
+        } else {
+            if now != before && held.is_some() {
+                ask.push(Ask::Place(vec![(id, now.placement(unit))]));
+            }
+            None
+        };
+        if !busy && held.is_none() && now != before {
+            ask.push(Ask::Place(vec![(id, now.placement(unit))]));
+        }
+    }
+
+    fn look(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        selection: &[ObjectId],
+        first: &Object,
+        ask: &mut Vec<Ask>,
+    ) {
+        let own = first.colour.map(|c| c.0);
+        let mixed = selection
+            .iter()
+            .filter_map(|&id| document.object(id))
+            .any(|o| o.colour != first.colour);
+        ui.horizontal(|ui| {
+            ui.label("Colour");
+            let mut rgb = self.colour.or(own).unwrap_or([0xc9, 0xc4, 0xbc]);
+            let picker = ui.color_edit_button_srgb(&mut rgb);
+            let open = egui::Popup::is_any_open(ui.ctx());
+            if picker.changed() {
+                self.colour = Some(rgb);
+            }
+            // The picker changes it many times; one step is made when it is put away.
+            if !open && let Some(chosen) = self.colour.take() {
+                ask.push(colour(Some(chosen)));
+            }
+            let text = own.map_or(String::new(), hex);
+            let mut typed = self.hex.clone().unwrap_or_else(|| text.clone());
+            let field = ui.add(
+                egui::TextEdit::singleline(&mut typed)
+                    .hint_text(if mixed { "mixed" } else { "#rrggbb" })
+                    .desired_width(72.0),
+            );
+            if field.changed() {
+                self.hex = Some(typed.clone());
+            }
+            if field.lost_focus()
+                && let Some(typed) = self.hex.take()
+                && typed != text
+            {
+                match parse_hex(&typed) {
+                    Some(rgb) => {
+                        self.fault = None;
+                        ask.push(colour(Some(rgb)));
+                    }
+                    None => {
+                        self.fault = Some(format!(
+                            "\"{typed}\" is no colour. Write six digits: #c04030."
+                        ))
+                    }
+                }
+            }
+            if own.is_some()
+                && ui
+                    .button(icon::ARROW_COUNTER_CLOCKWISE)
+                    .on_hover_text("No colour of its own")
+                    .clicked()
+            {
+                ask.push(colour(None));
+            }
+        });
+        if let Some(fault) = &self.fault {
+            ui.colored_label(ui.visuals().warn_fg_color, fault);
+        }
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(4.0, 4.0);
+            for (name, rgb) in PALETTE {
+                let swatch = egui::Button::new("")
+                    .fill(Color32::from_rgb(rgb[0], rgb[1], rgb[2]))
+                    .min_size(egui::vec2(24.0, 24.0));
+                if ui.add(swatch).on_hover_text(name).clicked() {
+                    ask.push(colour(Some(rgb)));
+                }
+            }
+        });
+        ui.horizontal(|ui| {
+            ui.label("Material");
+            let now = first.material.as_deref().unwrap_or(MATERIALS[0].id);
+            let shown = MATERIALS
+                .iter()
+                .find(|m| m.id == now)
+                .map_or(now, |m| m.name);
+            egui::ComboBox::from_id_salt("material")
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    for material in MATERIALS {
+                        if ui
+                            .selectable_label(material.id == now, material.name)
+                            .clicked()
+                        {
+                            ask.push(Ask::Material {
+                                ids: Vec::new(),
+                                material: Some(material.id.to_owned()),
+                            });
+                        }
+                    }
+                });
+        });
+    }
+
+    fn more(&mut self, ui: &mut Ui, ask: &mut Vec<Ask>) {
+        ui.horizontal_wrapped(|ui| {
+            for (text, hover, what) in [
+                (icon::COPY, "Duplicate", Ask::Duplicate),
+                (icon::FOLDER_SIMPLE_PLUS, "Group", Ask::Group),
+                (icon::FOLDER_SIMPLE_MINUS, "Ungroup", Ask::Ungroup),
+                (
+                    icon::ARROW_LINE_DOWN,
+                    "Put on the ground",
+                    Ask::Ground { ids: Vec::new() },
+                ),
+                (icon::TRASH, "Delete", Ask::Delete),
+            ] {
+                if ui.button(text).on_hover_text(hover).clicked() {
+                    ask.push(what);
+                }
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Mirror copy");
+            for (name, axis) in [("X", Axis::X), ("Y", Axis::Y), ("Z", Axis::Z)] {
+                if ui
+                    .button(name)
+                    .on_hover_text(format!(
+                        "A mirror image across the plane through the origin, along {name}"
+                    ))
+                    .clicked()
+                {
+                    ask.push(Ask::Mirror { axis });
+                }
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            let count = self.around.get_or_insert(6);
+            ui.label("Around the middle");
+            ui.add(DragValue::new(count).range(2..=64));
+            if ui
+                .button("Copy")
+                .on_hover_text("Copies evenly around the vertical through the origin")
+                .clicked()
+            {
+                ask.push(Ask::Around { count: *count });
+            }
+        });
+    }
+}
+
+fn colour(rgb: Option<[u8; 3]>) -> Ask {
+    Ask::Colour {
+        ids: Vec::new(),
+        colour: rgb.map(Colour),
+    }
+}
+
+/// A few that go together, none of them an operand's.
+const PALETTE: [(&str, [u8; 3]); 12] = [
+    ("Chalk", [0xe9, 0xe4, 0xda]),
+    ("Stone", [0xa8, 0xa2, 0x98]),
+    ("Slate", [0x5d, 0x63, 0x6b]),
+    ("Ink", [0x2b, 0x2e, 0x35]),
+    ("Clay", [0xb0, 0x6a, 0x4c]),
+    ("Brick", [0x96, 0x3c, 0x36]),
+    ("Rose", [0xc9, 0x7f, 0x8d]),
+    ("Plum", [0x75, 0x4a, 0x72]),
+    ("Denim", [0x44, 0x5d, 0x7e]),
+    ("Lagoon", [0x4a, 0x8c, 0x93]),
+    ("Moss", [0x6f, 0x7d, 0x46]),
+    ("Straw", [0xcf, 0xb4, 0x74]),
+];
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn parse_hex(text: &str) -> Option<[u8; 3]> {
+    let digits = text.trim().trim_start_matches('#');
+    if digits.len() != 6 || !digits.is_ascii() {
+        return None;
+    }
+    let part = |i: usize| u8::from_str_radix(digits.get(i..i + 2)?, 16).ok();
+    Some([part(0)?, part(2)?, part(4)?])
+}
+
+/// The box around the objects, in metres.
+fn size(document: &Document, ids: &[ObjectId]) -> Option<Vec3> {
+    let mut low = Vec3::INFINITY;
+    let mut high = Vec3::NEG_INFINITY;
+    for object in ids.iter().filter_map(|&id| document.object(id)) {
+        let bounds = match &object.kind {
+            Kind::Solid(recipe) => recipe.bounds(),
+            Kind::Foreign { bounds, .. } => *bounds,
+        };
+        if bounds.is_empty() {
+            continue;
+        }
+        let affine = object.placement.affine();
+        for i in 0..8 {
+            let pick = |bit: usize| {
+                if i >> bit & 1 == 0 {
+                    bounds.min[bit]
+                } else {
+                    bounds.max[bit]
+                }
+            };
+            let p = affine.transform_point3(Vec3::new(pick(0), pick(1), pick(2)));
+            low = low.min(p);
+            high = high.max(p);
+        }
+    }
+    low.cmple(high).all().then_some(high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_written_and_read() {
+        assert_eq!(parse_hex("#c04030"), Some([0xc0, 0x40, 0x30]));
+        assert_eq!(parse_hex(&hex([1, 2, 255])), Some([1, 2, 255]));
+        for bad in ["", "#12", "#gggggg", "c040301", "ééé"] {
+            assert_eq!(parse_hex(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_say_where_a_thing_stands() {
+        let placement = Placement {
+            rotation: Quat::from_euler(EulerRot::XYZ, 0.3, -0.4, 1.0),
+            ..Placement::at(Vec3::new(0.1, 0.2, -0.3))
+        };
+        let there = Numbers::of(&placement, Unit::Inch).placement(Unit::Inch);
+        assert!(there.translation.distance(placement.translation) < 1e-6);
+        assert!(there.rotation.angle_between(placement.rotation) < 1e-3);
+    }
+}
