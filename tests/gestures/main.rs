@@ -6,6 +6,7 @@ mod fuzz;
 mod gamepad;
 mod holding;
 mod keyboard;
+mod objects;
 mod operands;
 mod oracle;
 mod pad_session;

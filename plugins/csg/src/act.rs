@@ -8,6 +8,7 @@ use midair_studio::{
     evaluate::Evaluations,
     hands::{Action, Cross, Hands, Haptic, Side},
     notice::Notices,
+    objects::{carried, companions, picked},
     pick::Touch,
     project::{Project, Selection},
     settings::Settings,
@@ -136,11 +137,21 @@ fn apply_mark(project: &mut Project, notices: &mut Notices, object: ObjectId, ma
 }
 
 /// A model that a hand touches and acts on is selected.
-pub(crate) fn select(hands: Res<Hands>, touch: Res<Touch>, mut selection: ResMut<Selection>) {
+pub(crate) fn select(
+    hands: Res<Hands>,
+    touch: Res<Touch>,
+    project: Res<Project>,
+    mut selection: ResMut<Selection>,
+) {
     for (side, hand) in hands.both() {
         if hand.pressed(Action::Act) {
-            let touched: Vec<_> = touch.get(side).map(|t| t.object).into_iter().collect();
-            selection.set_if_neq(Selection(touched));
+            // A group is selected as one; what is selected with others stays so, to be moved together.
+            let touched = touch.get(side).map(|t| t.object);
+            if touched.is_some_and(|t| selection.0.contains(&t)) {
+                continue;
+            }
+            let picked = touched.map_or_else(Vec::new, |t| picked(project.document(), t));
+            selection.set_if_neq(Selection(picked));
         }
     }
 }
@@ -194,7 +205,7 @@ pub(crate) fn delete(
             continue;
         }
         let objects = match draft.held(side).or(touch.get(side).map(|t| t.object)) {
-            Some(object) => vec![object],
+            Some(object) => picked(project.document(), object),
             None => selection.0.clone(),
         };
         let edits: Vec<_> = objects
@@ -283,6 +294,7 @@ pub(crate) fn grab(
     mut hands: ResMut<Hands>,
     touch: Res<Touch>,
     project: Res<Project>,
+    selection: Res<Selection>,
     mut draft: ResMut<Draft>,
     mut drafts: ResMut<Drafts>,
 ) {
@@ -328,6 +340,23 @@ pub(crate) fn grab(
             drafts.set(object, hold.placement(&hands.get(side).pose));
         }
     }
+    // A group, and what is selected together, moves as one.
+    for (side, other) in Side::BOTH.map(|s| (s, s.other())) {
+        let Some((object, now)) = draft.held(side).and_then(|o| Some((o, *drafts.get(o)?))) else {
+            continue;
+        };
+        let Some(before) = document.object(object).map(|o| o.placement) else {
+            continue;
+        };
+        for companion in companions(document, &selection.0, object) {
+            if draft.held(other) != Some(companion)
+                && let Some(standing) = document.object(companion)
+            {
+                let there = carried(&before, &now, &standing.placement);
+                drafts.set(companion, there);
+            }
+        }
+    }
 }
 
 /// A hand that lets go: the last one commits the gesture as one edit.
@@ -335,6 +364,7 @@ pub(crate) fn release(
     mut hands: ResMut<Hands>,
     mut draft: ResMut<Draft>,
     mut drafts: ResMut<Drafts>,
+    selection: Res<Selection>,
     mut project: ResMut<Project>,
     mut notices: ResMut<Notices>,
 ) {
@@ -351,6 +381,11 @@ pub(crate) fn release(
             }
             draft.stretch = None;
             drafts.take(object);
+            for companion in companions(project.document(), &selection.0, object) {
+                if !draft.holds(companion) {
+                    drafts.take(companion);
+                }
+            }
             continue;
         }
         if hands.get(side).held(Action::Grab) {
@@ -368,7 +403,19 @@ pub(crate) fn release(
             continue;
         }
         if let Some(placement) = drafts.take(object) {
-            commit_placement(&mut project, &mut notices, object, placement, stretched);
+            let with: Vec<_> = companions(project.document(), &selection.0, object)
+                .into_iter()
+                .filter(|&c| !draft.holds(c))
+                .filter_map(|c| Some((c, drafts.take(c)?)))
+                .collect();
+            commit_placement(
+                &mut project,
+                &mut notices,
+                object,
+                placement,
+                with,
+                stretched,
+            );
             hands.pulse(side, Haptic::Tick);
         }
     }
@@ -379,6 +426,7 @@ fn commit_placement(
     notices: &mut Notices,
     id: ObjectId,
     placement: Placement,
+    with: Vec<(ObjectId, Placement)>,
     stretched: bool,
 ) {
     let Some(object) = project.document().object(id) else {
@@ -399,6 +447,10 @@ fn commit_placement(
     if fresh && object.placement != placement {
         edits.push(Edit::SetFresh { id, fresh: false });
     }
+    edits.extend(
+        with.into_iter()
+            .map(|(id, placement)| Edit::SetPlacement { id, placement }),
+    );
     project.commit(name, edits, notices);
 }
 
