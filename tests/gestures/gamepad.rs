@@ -364,3 +364,51 @@ fn the_sticks_turn_the_view_about_the_hand_and_the_hand_in_depth() {
     desk.wait(2);
     assert_eq!(desk.document().len(), 0);
 }
+
+#[test]
+fn a_document_is_saved_under_a_name_by_gamepad() {
+    let mut desk = Desk::new();
+    desk.plug();
+    desk.take("Cube");
+    // Into the panels, to the bar, to its menu.
+    for _ in 0..6 {
+        desk.tap(Button::LeftThumb);
+        if desk.focus().region().is_some_and(|r| r.name == "bar") {
+            break;
+        }
+    }
+    for _ in 0..12 {
+        if desk.focus().label().contains("File") {
+            break;
+        }
+        desk.tap(Button::DPadLeft);
+    }
+    desk.tap(Button::South);
+    for _ in 0..8 {
+        if desk.focus().label().contains("Save as") {
+            break;
+        }
+        desk.tap(Button::DPadDown);
+    }
+    assert!(
+        desk.focus().label().contains("Save as"),
+        "{}",
+        desk.focus().label()
+    );
+    desk.tap(Button::South);
+    desk.wait(3);
+    assert!(
+        desk.focus().is_text(),
+        "the field of the name has the focus"
+    );
+    // The name is filled in beforehand; an x is put behind it and taken away again.
+    desk.tap(Button::South);
+    assert!(desk.world().resource::<Typing>().open);
+    desk.type_text("x");
+    desk.tap(Button::West);
+    desk.tap(Button::Start);
+    desk.settle();
+    assert_eq!(desk.warnings(), [] as [String; 0]);
+    let work = midair_studio::project::Places::below(desk.home.path()).work;
+    assert!(work.join("Untitled.midair").exists());
+}

@@ -5,12 +5,14 @@ use midair_studio::{
     command::Command,
     hands::Action,
     objects::Ask,
-    panel::Panels,
+    panel::{Asking, Panels},
     project::{Project, Selection},
+    settings::Settings,
     tools::Tools,
 };
 
 use crate::bindings::{Bindings, Control, Controls, Device};
+use crate::panels::Screen;
 
 /// What the device that was used last calls an action; empty where it has nothing for it.
 pub fn key_name(action: Action, bindings: &Bindings, device: Device) -> String {
@@ -67,11 +69,10 @@ const PANELS: [(Control, &str); 4] = [
 ];
 
 pub(crate) fn commands(
-    controls: Res<Controls>,
-    tools: Res<Tools>,
-    panels: Res<Panels>,
-    project: Res<Project>,
-    selection: Res<Selection>,
+    (controls, settings): (Res<Controls>, Res<Settings>),
+    (tools, panels): (Res<Tools>, Res<Panels>),
+    (project, selection): (Res<Project>, Res<Selection>),
+    mut screen: ResMut<Screen>,
     mut commands: MessageWriter<Command>,
 ) {
     for (control, command) in [
@@ -82,9 +83,24 @@ pub(crate) fn commands(
             commands.write(command);
         }
     }
-    for (control, command) in [(Control::Save, Command::Save)] {
+    let wireframe = Settings::command("look.wireframe", !settings.look.wireframe);
+    for (control, command) in [
+        (Control::New, Command::New),
+        (Control::Save, Command::Save),
+        (Control::Wireframe, wireframe),
+    ] {
         if controls.just_pressed(control) {
             commands.write(command);
+        }
+    }
+    for (control, asking) in [
+        (Control::Open, Asking::Open),
+        (Control::SaveAs, Asking::SaveAs),
+        (Control::Export, Asking::Export),
+        (Control::Import, Asking::Import),
+    ] {
+        if controls.just_pressed(control) {
+            screen.ask(asking, &project);
         }
     }
     for (control, mark) in [

@@ -1,4 +1,4 @@
-//! A window with mouse and keyboard: the pointer is the leading hand.
+//! A window with mouse, keyboard and gamepad: the pointer or a stick is the leading hand.
 //!
 //! Left acts and drags, middle (or Alt and left) orbits, Shift and middle pans, the wheel zooms, or
 //! while something is dragged moves it nearer or farther. The other hand stays where it is and
@@ -70,7 +70,14 @@ impl Plugin for FlatscreenPlugin {
             )
             .add_systems(
                 Update,
-                (orbit::frame, labels::hands, panels::title, panels::drop).in_set(StudioSet::Cue),
+                (
+                    orbit::frame,
+                    labels::hands,
+                    gamepad::rumble,
+                    panels::title,
+                    panels::drop,
+                )
+                    .in_set(StudioSet::Cue),
             )
             .add_systems(
                 EguiPrimaryContextPass,

@@ -7,7 +7,7 @@ use midair_studio::{
     command::Command,
     evaluate::Evaluations,
     notice::Notices,
-    panel::{self, Bar, Dock, PanelInfo, Panels},
+    panel::{self, Asking, Bar, Dock, PanelInfo, Panels},
     project::Project,
 };
 
@@ -35,6 +35,11 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
+    /// Asks for a file in the bar.
+    pub fn ask(&mut self, asking: Asking, project: &Project) {
+        self.bar.ask(asking, project);
+    }
+
     /// Whether a panel has the pointer, or it is nowhere.
     pub fn covers(&self, cursor: Option<Vec2>) -> bool {
         let (Some(cursor), Some(view)) = (cursor, self.view) else {

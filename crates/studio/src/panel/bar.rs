@@ -20,14 +20,39 @@ pub struct Bar {
     step: Option<f32>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Asking {
+/// Which file is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Asking {
+    /// None.
     #[default]
     Nothing,
+    /// A document to open.
     Open,
+    /// A name for the document.
     SaveAs,
+    /// A mesh file to write.
     Export,
+    /// A mesh file to bring in.
     Import,
+}
+
+impl Bar {
+    /// Asks for a file, with a name filled in beforehand where there is one to offer.
+    pub fn ask(&mut self, asking: Asking, project: &Project) {
+        let ending = match asking {
+            Asking::SaveAs => "midair",
+            Asking::Export => "stl",
+            Asking::Nothing | Asking::Open | Asking::Import => "",
+        };
+        self.asking = asking;
+        self.fresh = true;
+        self.path = if ending.is_empty() {
+            String::new()
+        } else {
+            let name = format!("{}.{ending}", project.title());
+            project.work_folder().join(name).display().to_string()
+        };
+    }
 }
 
 /// Modes, files, undo, the step of the grid.
@@ -122,26 +147,17 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
 }
 
 fn files(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {
-    let mut choose = |ui: &mut Ui, text: &str, asking: Asking, ending: &str| {
+    for (text, asking) in [
+        ("Open…", Asking::Open),
+        ("Save as…", Asking::SaveAs),
+        ("Export a mesh…", Asking::Export),
+        ("Import a mesh…", Asking::Import),
+    ] {
         if ui.button(text).clicked() {
-            state.asking = asking;
-            state.fresh = true;
-            let folder = project.work_folder();
-            state.path = if ending.is_empty() {
-                String::new()
-            } else {
-                folder
-                    .join(format!("{}.{ending}", project.title()))
-                    .display()
-                    .to_string()
-            };
+            state.ask(asking, project);
             ui.close();
         }
-    };
-    choose(ui, "Open…", Asking::Open, "");
-    choose(ui, "Save as…", Asking::SaveAs, "midair");
-    choose(ui, "Export a mesh…", Asking::Export, "stl");
-    choose(ui, "Import a mesh…", Asking::Import, "");
+    }
     for (text, ask) in [("New", Command::New), ("Save   Ctrl+S", Command::Save)] {
         if ui.button(text).clicked() {
             asks.push(ask);

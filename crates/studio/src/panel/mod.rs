@@ -15,7 +15,7 @@ mod registry;
 mod ring;
 mod style;
 
-pub use bar::{Bar, bar};
+pub use bar::{Asking, Bar, bar};
 pub use hints::{KeyNames, hints};
 pub use keyboard::{Key, Keyboard, keyboard};
 pub use library::library;

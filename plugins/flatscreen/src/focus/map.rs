@@ -27,7 +27,7 @@ pub struct Region {
 impl Region {
     /// The widget that one is on at first; not the one that closes the panel again.
     pub(crate) fn first(&self) -> Spot {
-        let own = usize::from(self.closes && !self.floats && self.spots.len() > 1);
+        let own = usize::from(self.closes && self.name != "popup" && self.spots.len() > 1);
         self.spots[own]
     }
 }
@@ -136,15 +136,21 @@ impl Map {
                 })
                 .collect()
         });
-        let holds_others = |spot: &Spot| {
-            found
-                .iter()
-                .any(|(other, _)| other.id != spot.id && spot.rect.contains_rect(other.rect))
+        let held = |spot: &Spot| {
+            let others = found.iter().filter(|(other, _)| other.id != spot.id);
+            others
+                .filter(|(o, _)| spot.rect.contains_rect(o.rect))
+                .count()
         };
+        let all = found.len().saturating_sub(1);
         found
             .iter()
-            // What is only dragged and lies behind others moves a window.
-            .filter(|(spot, sense)| sense.senses_click() || !holds_others(spot))
+            // What lies behind all others is their ground; what is only dragged and lies behind any moves
+            // a window.
+            .filter(|(spot, sense)| match held(spot) {
+                0 => true,
+                some => sense.senses_click() && some < all,
+            })
             .map(|(spot, _)| *spot)
             .collect()
     }

@@ -26,6 +26,8 @@ pub struct Focus {
     spot: Option<Spot>,
     /// Of what kind that is.
     kind: Option<WidgetType>,
+    /// It takes letters.
+    text: bool,
     /// What is written on it.
     label: String,
     /// The region that had it last.
@@ -68,7 +70,7 @@ impl Focus {
 
     /// Whether it is in a field that takes letters.
     pub fn is_text(&self) -> bool {
-        self.inside && self.kind == Some(WidgetType::TextEdit)
+        self.inside && self.text
     }
 
     /// The panel takes it as soon as it is there.
@@ -96,6 +98,8 @@ impl Focus {
 
     /// After everything is drawn: what there is, what has the focus, and the ring around it.
     pub(crate) fn settle(&mut self, ctx: &egui::Context, map: Map) {
+        // A menu finds its size in the pass in which it appears.
+        let ready = self.regions.iter().any(|r| r.name == "popup");
         self.regions = map.finish();
         let gained = ctx.output(|o| {
             o.events.iter().rev().find_map(|e| match e {
@@ -128,13 +132,15 @@ impl Focus {
             return;
         }
         // A menu that has opened takes it, and gives it back when it closes.
-        if self.region != "popup"
+        if ready
+            && self.region != "popup"
             && let Some(popup) = self.regions.iter().find(|r| r.name == "popup")
         {
             let first = popup.first();
             self.region = "popup";
             self.give(ctx, first);
         }
+        self.text = self.given.is_none() && ctx.text_edit_focused();
         let focused = self.given.or(ctx.memory(|m| m.focused()));
         let found = focused.and_then(|id| {
             self.regions.iter().find_map(|r| {

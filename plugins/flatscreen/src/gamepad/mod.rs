@@ -9,6 +9,7 @@
 mod camera;
 mod hands;
 mod lead;
+mod rumble;
 
 use bevy::prelude::*;
 use midair_studio::hands::{HOLD, Pose, Side};
@@ -16,6 +17,7 @@ use midair_studio::hands::{HOLD, Pose, Side};
 pub(crate) use camera::camera;
 pub(crate) use hands::hands;
 pub(crate) use lead::lead;
+pub(crate) use rumble::rumble;
 
 /// What the gamepad does with the two hands.
 #[derive(Resource, Clone, Debug)]
