@@ -64,6 +64,8 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         } else {
             ExitCondition::DontExit
         },
+        // Work that is not saved is asked about first.
+        close_when_requested: false,
         ..default()
     };
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {

@@ -6,6 +6,7 @@ mod fuzz;
 mod gamepad;
 mod holding;
 mod keyboard;
+mod leaving;
 mod objects;
 mod operands;
 mod oracle;

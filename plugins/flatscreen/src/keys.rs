@@ -2,17 +2,16 @@
 
 use bevy::prelude::*;
 use midair_studio::{
-    command::Command,
+    command::{Command, Dialog},
     hands::Action,
     objects::Ask,
-    panel::{Asking, Panels},
-    project::{Project, Selection},
+    panel::Panels,
+    project::{Project, Selection, Then},
     settings::Settings,
     tools::Tools,
 };
 
 use crate::bindings::{Bindings, Control, Controls, Device};
-use crate::panels::Screen;
 
 /// What the device that was used last calls an action; empty where it has nothing for it.
 pub fn key_name(action: Action, bindings: &Bindings, device: Device) -> String {
@@ -61,7 +60,8 @@ fn control(action: Action) -> Option<Control> {
 }
 
 /// Controls that show or hide a panel, by its id.
-const PANELS: [(Control, &str); 4] = [
+const PANELS: [(Control, &str); 5] = [
+    (Control::Export, "export"),
     (Control::Outline, "outline"),
     (Control::Settings, "settings"),
     (Control::Controls, "controls"),
@@ -72,7 +72,6 @@ pub(crate) fn commands(
     (controls, settings): (Res<Controls>, Res<Settings>),
     (tools, panels): (Res<Tools>, Res<Panels>),
     (project, selection): (Res<Project>, Res<Selection>),
-    mut screen: ResMut<Screen>,
     mut commands: MessageWriter<Command>,
 ) {
     for (control, command) in [
@@ -85,22 +84,15 @@ pub(crate) fn commands(
     }
     let wireframe = Settings::command("look.wireframe", !settings.look.wireframe);
     for (control, command) in [
-        (Control::New, Command::New),
         (Control::Save, Command::Save),
         (Control::Wireframe, wireframe),
+        (Control::New, Command::Leave(Then::New)),
+        (Control::Open, Command::Dialog(Dialog::Open)),
+        (Control::SaveAs, Command::Dialog(Dialog::SaveAs)),
+        (Control::Import, Command::Dialog(Dialog::Import)),
     ] {
         if controls.just_pressed(control) {
             commands.write(command);
-        }
-    }
-    for (control, asking) in [
-        (Control::Open, Asking::Open),
-        (Control::SaveAs, Asking::SaveAs),
-        (Control::Export, Asking::Export),
-        (Control::Import, Asking::Import),
-    ] {
-        if controls.just_pressed(control) {
-            screen.ask(asking, &project);
         }
     }
     for (control, mark) in [

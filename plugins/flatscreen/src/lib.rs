@@ -76,6 +76,7 @@ impl Plugin for FlatscreenPlugin {
                     gamepad::rumble,
                     panels::title,
                     panels::drop,
+                    panels::close_window,
                 )
                     .in_set(StudioSet::Cue),
             )

@@ -2,13 +2,14 @@
 
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
+use bevy::window::WindowCloseRequested;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     command::Command,
     evaluate::Evaluations,
     notice::Notices,
-    panel::{self, Asking, Bar, Dock, PanelInfo, Panels},
-    project::Project,
+    panel::{self, Bar, Dock, PanelInfo, Panels},
+    project::{Project, Then},
 };
 
 use crate::bindings::Controls;
@@ -35,11 +36,6 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Asks for a file in the bar.
-    pub fn ask(&mut self, asking: Asking, project: &Project) {
-        self.bar.ask(asking, project);
-    }
-
     /// Whether a panel has the pointer, or it is nowhere.
     pub fn covers(&self, cursor: Option<Vec2>) -> bool {
         let (Some(cursor), Some(view)) = (cursor, self.view) else {
@@ -320,10 +316,20 @@ pub(crate) fn drop(
         if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
             let document = path_buf.extension().is_some_and(|e| e == "midair");
             commands.write(if document {
-                Command::Open(path_buf.clone())
+                Command::Leave(Then::Open(path_buf.clone()))
             } else {
                 Command::Import(vec![path_buf.clone()])
             });
         }
+    }
+}
+
+/// The window's own button asks like any other way to leave.
+pub(crate) fn close_window(
+    mut asked: MessageReader<WindowCloseRequested>,
+    mut commands: MessageWriter<Command>,
+) {
+    if asked.read().count() > 0 {
+        commands.write(Command::Leave(Then::Quit));
     }
 }

@@ -19,6 +19,7 @@ use crate::StudioSet;
 use crate::evaluate::Evaluations;
 use crate::notice::Notices;
 use crate::project::{Begin, Places, Project, Recoverables, Shelf, attach, install};
+use crate::settings::Settings;
 
 /// What is to be fetched or brought.
 #[derive(Clone, Debug)]
@@ -305,6 +306,7 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 world.resource_mut::<Notices>().warn(warning.clone());
             }
             let opened = *opened;
+            note(world, &path);
             replace(
                 world,
                 History::new(opened.document, opened.meshes),
@@ -321,6 +323,7 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 notices.warn(warning);
             }
             notices.info(format!("Saved {}", path.display()));
+            note(world, &path);
         }
         Outcome::Exported(path, triangles) => world
             .resource_mut::<Notices>()
@@ -342,10 +345,27 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 add(*object, &mut project, &mut notices);
             });
         }
-        Outcome::Failed(reason) => world.resource_mut::<Notices>().warn(reason),
+        Outcome::Failed(reason) => {
+            world
+                .resource_mut::<Project>()
+                .bypass_change_detection()
+                .keep();
+            world.resource_mut::<Notices>().warn(reason);
+        }
         Outcome::Cancelled => world
             .resource_mut::<Notices>()
             .info("Given up; nothing was changed."),
+    }
+}
+
+/// The document is among the recent ones.
+fn note(world: &mut World, path: &std::path::Path) {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut settings = world.resource_mut::<Settings>();
+    let mut files = settings.files.clone();
+    files.note(&path);
+    if settings.files != files {
+        settings.files = files;
     }
 }
 

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use midair_document::{Edit, Object};
 use midair_field::Placement;
 
-use super::{Command, errand::Errand, errand::Errands};
+use super::{Command, Dialogs, errand::Errand, errand::Errands};
 use crate::StudioSet;
 use crate::hands::{Action, Hands, Side};
 use crate::notice::Notices;
@@ -41,7 +41,7 @@ fn handle(
     mut drafts: ResMut<Drafts>,
     mut selection: ResMut<Selection>,
     mut errands: ResMut<Errands>,
-    (mut settings, mut panels): (ResMut<Settings>, ResMut<Panels>),
+    (mut settings, mut panels, mut dialogs): (ResMut<Settings>, ResMut<Panels>, ResMut<Dialogs>),
     places: Res<Places>,
     mut notices: ResMut<Notices>,
 ) {
@@ -109,12 +109,17 @@ fn handle(
             Command::SaveAs(path) => {
                 errands.start(Errand::Save(path.clone()), &project, &places);
             }
-            Command::Export { path, step, unit } => errands.start(
+            Command::Export {
+                path,
+                step,
+                unit,
+                only,
+            } => errands.start(
                 Errand::Export {
                     path: path.clone(),
                     step: *step,
                     unit: *unit,
-                    only: None,
+                    only: *only,
                 },
                 &project,
                 &places,
@@ -137,6 +142,9 @@ fn handle(
             Command::Open(path) => {
                 errands.start(Errand::Open(path.clone()), &project, &places);
             }
+            Command::Dialog(dialog) => dialogs.ask(*dialog),
+            // Leaving is the project's.
+            Command::Leave(_) | Command::Answer(_) => {}
             Command::CancelErrands => errands.cancel(),
             Command::New => errands.start(Errand::New, &project, &places),
             Command::Restore => errands.start(Errand::Restore, &project, &places),

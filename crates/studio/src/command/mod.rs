@@ -16,7 +16,11 @@ use serde::{Deserialize, Serialize};
 
 pub use errand::Errands;
 
-use crate::{hands::Side, tools::ToolId};
+use crate::{
+    hands::Side,
+    project::{Answer, Then},
+    tools::ToolId,
+};
 
 /// One thing asked for.
 #[derive(Message, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +60,9 @@ pub enum Command {
         /// The file's unit; the format's own where `None`.
         #[serde(default)]
         unit: Option<Unit>,
+        /// Only this object; all that are visible where `None`.
+        #[serde(default)]
+        only: Option<ObjectId>,
     },
     /// Writes one object as a mesh file.
     ExportObject {
@@ -68,6 +75,12 @@ pub enum Command {
     Import(Vec<PathBuf>),
     /// Gives up the files that are being read or written.
     CancelErrands,
+    /// Leaves the work at hand for something else; asks first where it is not saved.
+    Leave(Then),
+    /// The answer to that question.
+    Answer(Answer),
+    /// Asks the person for a file.
+    Dialog(Dialog),
     /// Takes up the work that an earlier run left behind.
     Restore,
     /// Leaves that work aside for good.
@@ -99,6 +112,35 @@ pub enum Command {
     Edit(Edit),
 }
 
+/// A file that a person is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Dialog {
+    /// A document to open.
+    Open,
+    /// Where to save it.
+    SaveAs,
+    /// Meshes for the library.
+    Import,
+}
+
+/// The file dialog asked for last, numbered so that each is shown once.
+#[derive(Resource, Debug, Default)]
+pub struct Dialogs {
+    asked: Option<(u64, Dialog)>,
+}
+
+impl Dialogs {
+    /// The latest, if it is later than `seen`.
+    pub fn after(&self, seen: u64) -> Option<(u64, Dialog)> {
+        self.asked.filter(|(number, _)| *number > seen)
+    }
+
+    fn ask(&mut self, dialog: Dialog) {
+        let number = self.asked.map_or(0, |(n, _)| n) + 1;
+        self.asked = Some((number, dialog));
+    }
+}
+
 impl Command {
     /// Whether a person's hands could have asked for it (a panel or a button does).
     pub fn by_hand(&self) -> bool {
@@ -107,7 +149,7 @@ impl Command {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_message::<Command>();
+    app.add_message::<Command>().init_resource::<Dialogs>();
     handle::plugin(app);
     errand::plugin(app);
 }

@@ -117,6 +117,11 @@ impl Evaluations {
         self.made.get(key)
     }
 
+    /// What is made already, without asking for it or keeping it longer.
+    pub fn made(&self, key: &Key) -> Option<Arc<Made>> {
+        self.made.look(key)
+    }
+
     /// Why it cannot be made, if it was tried.
     pub fn failure(&self, key: &Key) -> Option<&str> {
         self.failed.get(key).map(String::as_str)

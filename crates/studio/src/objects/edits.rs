@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use bevy::math::Vec3;
-use midair_document::{Document, Edit, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use midair_document::{Document, Edit, GroupId, Layer, LayerId, Object, ObjectId};
 use midair_field::Placement;
 
+use super::extent::{corners, extent};
 use super::{Ask, mirrored, turned};
 
 /// Why nothing was done.
@@ -289,7 +290,7 @@ pub(super) fn edits(
             let edits = ids.iter().flat_map(|&id| {
                 let object = document.object(id)?;
                 let mut placement = object.placement;
-                placement.translation.y -= lowest(object)?;
+                placement.translation.y -= corners(object).map(|p| p.y).reduce(f32::min)?;
                 Some(placed(document, id, placement))
             });
             (count("Put on the ground", &ids), edits.flatten().collect())
@@ -401,41 +402,6 @@ fn empty_groups(document: &Document, gone: &[ObjectId]) -> Vec<Edit> {
 
 /// How far a copy is put aside: a quarter of what is copied, so that both can be seen.
 fn offset(document: &Document, ids: &[ObjectId]) -> f32 {
-    let size = ids
-        .iter()
-        .filter_map(|&id| document.object(id))
-        .filter_map(size)
-        .fold(0.0, f32::max);
+    let size = extent(document, ids.iter().copied()).map_or(0.0, |(l, h)| (h - l).max_element());
     (0.25 * size).clamp(0.02, 0.5)
-}
-
-fn corners(object: &Object) -> Option<impl Iterator<Item = Vec3>> {
-    let bounds = match &object.kind {
-        Kind::Solid(recipe) => recipe.bounds(),
-        Kind::Foreign { bounds, .. } => *bounds,
-    };
-    let affine = object.placement.affine();
-    (!bounds.is_empty()).then(|| {
-        (0..8).map(move |i| {
-            let pick = |bit: usize, axis: usize| {
-                if i >> bit & 1 == 0 {
-                    bounds.min[axis]
-                } else {
-                    bounds.max[axis]
-                }
-            };
-            affine.transform_point3(Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2)))
-        })
-    })
-}
-
-fn size(object: &Object) -> Option<f32> {
-    let (low, high) = corners(object)?.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
-        (l.min(p), h.max(p))
-    });
-    Some((high - low).max_element())
-}
-
-fn lowest(object: &Object) -> Option<f32> {
-    corners(object)?.map(|p| p.y).reduce(f32::min)
 }

@@ -8,6 +8,7 @@ mod ask;
 mod carry;
 mod copies;
 mod edits;
+mod extent;
 mod select;
 
 use bevy::prelude::*;
@@ -15,6 +16,7 @@ use bevy::prelude::*;
 pub use ask::{Ask, Axis, How};
 pub use carry::{carried, companions};
 pub use copies::{mirrored, turned};
+pub use extent::extent;
 pub use select::picked;
 
 use crate::StudioSet;

@@ -1,58 +1,21 @@
-use std::path::PathBuf;
-
 use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
-use super::Panels;
-use crate::command::{Command, Errands};
-use crate::project::{Project, Recoverables};
+use super::{Files, Panels, icon};
+use crate::command::{Command, Dialog, Dialogs, Errands};
+use crate::project::{Project, Recoverables, Then};
+use crate::settings::Settings;
 use crate::tools::Tools;
 
-/// What the bar remembers between frames: the fields that are being typed into.
-#[derive(Clone, Debug, Default)]
+/// What the bar remembers between frames: what is being chosen and dragged.
+#[derive(Default)]
 pub struct Bar {
-    path: String,
-    asking: Asking,
-    /// The field has just appeared and takes the keyboard.
-    fresh: bool,
+    files: Files,
+    /// The file dialog that was shown last.
+    seen: u64,
     /// The step while its slider is dragged; one command is sent when it is let go.
     step: Option<f32>,
-}
-
-/// Which file is asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Asking {
-    /// None.
-    #[default]
-    Nothing,
-    /// A document to open.
-    Open,
-    /// A name for the document.
-    SaveAs,
-    /// A mesh file to write.
-    Export,
-    /// A mesh file to bring in.
-    Import,
-}
-
-impl Bar {
-    /// Asks for a file, with a name filled in beforehand where there is one to offer.
-    pub fn ask(&mut self, asking: Asking, project: &Project) {
-        let ending = match asking {
-            Asking::SaveAs => "midair",
-            Asking::Export => "stl",
-            Asking::Nothing | Asking::Open | Asking::Import => "",
-        };
-        self.asking = asking;
-        self.fresh = true;
-        self.path = if ending.is_empty() {
-            String::new()
-        } else {
-            let name = format!("{}.{ending}", project.title());
-            project.work_folder().join(name).display().to_string()
-        };
-    }
 }
 
 /// Modes, files, undo, the step of the grid.
@@ -63,18 +26,30 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
     let errands = world.resource::<Errands>();
     let mut asks = Vec::new();
     ui.horizontal_wrapped(|ui| {
-        ui.menu_button("File", |ui| files(ui, state, project, &mut asks));
+        ui.menu_button("File", |ui| files(ui, world, &mut asks));
         let history = project.history();
+        let named = |verb: &str, name: Option<&str>, keys: &str| match name {
+            Some(name) => format!("{verb}: {name}   {keys}"),
+            None => format!("{verb}   {keys}"),
+        };
+        let undo = named("Undo", history.undo_names().next(), "Ctrl+Z");
+        let redo = named("Redo", history.redo_names().next(), "Ctrl+Shift+Z");
         if ui
-            .add_enabled(history.undo_len() > 0, egui::Button::new("⟲ Undo"))
-            .on_hover_text("Ctrl+Z")
+            .add_enabled(
+                history.undo_len() > 0,
+                egui::Button::new(icon::ARROW_COUNTER_CLOCKWISE),
+            )
+            .on_hover_text(undo)
             .clicked()
         {
             asks.push(Command::Undo);
         }
         if ui
-            .add_enabled(history.redo_len() > 0, egui::Button::new("⟳ Redo"))
-            .on_hover_text("Ctrl+Shift+Z")
+            .add_enabled(
+                history.redo_len() > 0,
+                egui::Button::new(icon::ARROW_CLOCKWISE),
+            )
+            .on_hover_text(redo)
             .clicked()
         {
             asks.push(Command::Redo);
@@ -119,7 +94,7 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             ui.label(egui::RichText::new(text).strong());
             let restore = egui::Button::new("Restore it").fill(super::ACCENT.gamma_multiply(0.65));
             if ui.add(restore).clicked() {
-                asks.push(Command::Restore);
+                asks.push(Command::Leave(Then::Restore));
             }
             if ui
                 .button("Throw it away")
@@ -142,81 +117,84 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             }
         });
     }
-    ask_path(ui, state, &mut asks);
+    if let Some((number, dialog)) = world.resource::<Dialogs>().after(state.seen) {
+        state.seen = number;
+        state.files.ask(dialog, project);
+    }
+    asks.extend(state.files.show(ui.ctx()));
     asks
 }
 
-fn files(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {
-    for (text, asking) in [
-        ("Open…", Asking::Open),
-        ("Save as…", Asking::SaveAs),
-        ("Export a mesh…", Asking::Export),
-        ("Import a mesh…", Asking::Import),
-    ] {
-        if ui.button(text).clicked() {
-            state.ask(asking, project);
-            ui.close();
-        }
-    }
-    for (text, ask) in [("New", Command::New), ("Save   Ctrl+S", Command::Save)] {
-        if ui.button(text).clicked() {
+fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
+    let recent = &world.resource::<Settings>().files.recent;
+    let mut item = |ui: &mut Ui, sign: &str, text: &str, keys: &str, ask: Command| {
+        let button = egui::Button::new(format!("{sign}  {text}")).shortcut_text(keys);
+        if ui.add(button).clicked() {
             asks.push(ask);
             ui.close();
         }
-    }
-}
-
-fn ask_path(ui: &mut Ui, state: &mut Bar, asks: &mut Vec<Command>) {
-    let (verb, hint) = match state.asking {
-        Asking::Nothing => return,
-        Asking::Open => ("Open", "a document: *.midair"),
-        Asking::SaveAs => ("Save", "a document: *.midair"),
-        Asking::Export => (
-            "Export",
-            "a mesh: .stl or .3mf for printing, .glb, .obj, .ply",
-        ),
-        Asking::Import => ("Import", "a mesh: .glb, .obj, .stl, .ply"),
     };
-    let mut done = false;
-    ui.horizontal(|ui| {
-        ui.label(verb);
-        let field = ui.add(
-            egui::TextEdit::singleline(&mut state.path)
-                .hint_text(hint)
-                .desired_width(480.0),
-        );
-        if std::mem::take(&mut state.fresh) {
-            field.request_focus();
+    ui.set_min_width(240.0);
+    item(ui, icon::FILE, "New", "Ctrl+N", Command::Leave(Then::New));
+    item(
+        ui,
+        icon::FOLDER_OPEN,
+        "Open…",
+        "Ctrl+O",
+        Command::Dialog(Dialog::Open),
+    );
+    ui.menu_button(
+        format!("{}  Open recent", icon::CLOCK_COUNTER_CLOCKWISE),
+        |ui| {
+            if recent.is_empty() {
+                ui.weak("Nothing was opened or saved yet");
+            }
+            for path in recent {
+                let name = path
+                    .file_name()
+                    .map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+                let open = ui
+                    .add_enabled(path.exists(), egui::Button::new(name))
+                    .on_hover_text(path.display().to_string())
+                    .on_disabled_hover_text(format!("{} is not there any more", path.display()));
+                if open.clicked() {
+                    asks.push(Command::Leave(Then::Open(path.clone())));
+                    ui.close();
+                }
+            }
+        },
+    );
+    let mut item = |ui: &mut Ui, sign: &str, text: &str, keys: &str, ask: Command| {
+        let button = egui::Button::new(format!("{sign}  {text}")).shortcut_text(keys);
+        if ui.add(button).clicked() {
+            asks.push(ask);
+            ui.close();
         }
-        done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Escape));
-        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if (ui.button(verb).clicked() || entered) && !state.path.trim().is_empty() {
-            let path = from_home(state.path.trim());
-            asks.push(match state.asking {
-                Asking::Open => Command::Open(path),
-                Asking::SaveAs => Command::SaveAs(path),
-                Asking::Import => Command::Import(vec![path]),
-                _ => Command::Export {
-                    path,
-                    step: None,
-                    unit: None,
-                },
-            });
-            done = true;
-        }
-        done |= ui.button("Cancel").clicked();
-    });
-    if done {
-        state.asking = Asking::Nothing;
-    }
-}
-
-/// `~/` as shells read it.
-fn from_home(path: &str) -> PathBuf {
-    match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
-        (Some(rest), Some(home)) => PathBuf::from(home).join(rest),
-        _ => PathBuf::from(path),
-    }
+    };
+    ui.separator();
+    item(ui, icon::FLOPPY_DISK, "Save", "Ctrl+S", Command::Save);
+    item(
+        ui,
+        icon::FLOPPY_DISK_BACK,
+        "Save as…",
+        "Ctrl+Shift+S",
+        Command::Dialog(Dialog::SaveAs),
+    );
+    ui.separator();
+    let export = Command::Panel {
+        id: "export".into(),
+        open: true,
+    };
+    item(ui, icon::EXPORT, "Export a mesh…", "Ctrl+E", export);
+    item(
+        ui,
+        icon::DOWNLOAD_SIMPLE,
+        "Import meshes…",
+        "Ctrl+I",
+        Command::Dialog(Dialog::Import),
+    );
+    ui.separator();
+    item(ui, icon::SIGN_OUT, "Quit", "", Command::Leave(Then::Quit));
 }
 
 fn step(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {

@@ -4,8 +4,11 @@
 //! commands. None of them changes the document.
 
 mod bar;
+mod export;
+mod files;
 mod hints;
 mod keyboard;
+mod leave;
 mod library;
 mod notices;
 mod objects;
@@ -15,7 +18,9 @@ mod registry;
 mod ring;
 mod style;
 
-pub use bar::{Asking, Bar, bar};
+pub use bar::{Bar, bar};
+pub use export::triangles;
+pub use files::Files;
 pub use hints::{KeyNames, hints};
 pub use keyboard::{Key, Keyboard, keyboard};
 pub use library::library;
@@ -66,5 +71,29 @@ pub(crate) fn plugin(app: &mut bevy::prelude::App) {
                 in_bar: true,
             },
             properties::Properties::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "export",
+                title: "Export",
+                icon: icon::EXPORT,
+                dock: Dock::Window,
+                order: 20,
+                open: false,
+                in_bar: false,
+            },
+            export::Export::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: crate::project::LEAVE_PANEL,
+                title: "Save your work?",
+                icon: icon::FLOPPY_DISK,
+                dock: Dock::Modal,
+                order: 0,
+                open: false,
+                in_bar: false,
+            },
+            leave::Leave,
         );
 }

@@ -3,13 +3,13 @@
 use bevy::math::{EulerRot, Quat, Vec3};
 use bevy::prelude::World;
 use bevy_egui::egui::{self, Color32, DragValue, Ui};
-use midair_document::{Colour, Document, Kind, Object, ObjectId};
+use midair_document::{Colour, Document, Object, ObjectId};
 use midair_field::Placement;
 use midair_mesh::Unit;
 
 use super::{Panel, icon};
 use crate::command::Command;
-use crate::objects::{Ask, Axis};
+use crate::objects::{Ask, Axis, extent};
 use crate::project::{Project, Selection};
 use crate::settings::Settings;
 use crate::show::MATERIALS;
@@ -77,10 +77,10 @@ impl Panel for Properties {
                         ui.strong(format!("{} objects", several.len()));
                     }
                 }
-                if let Some(size) = size(document, selection) {
+                if let Some((low, high)) = extent(document, selection.iter().copied()) {
                     ui.horizontal(|ui| {
                         ui.label("Size");
-                        ui.label(units::size(size, unit))
+                        ui.label(units::size(high - low, unit))
                             .on_hover_text("Width, height, depth");
                     });
                 }
@@ -338,35 +338,6 @@ fn parse_hex(text: &str) -> Option<[u8; 3]> {
     }
     let part = |i: usize| u8::from_str_radix(digits.get(i..i + 2)?, 16).ok();
     Some([part(0)?, part(2)?, part(4)?])
-}
-
-/// The box around the objects, in metres.
-fn size(document: &Document, ids: &[ObjectId]) -> Option<Vec3> {
-    let mut low = Vec3::INFINITY;
-    let mut high = Vec3::NEG_INFINITY;
-    for object in ids.iter().filter_map(|&id| document.object(id)) {
-        let bounds = match &object.kind {
-            Kind::Solid(recipe) => recipe.bounds(),
-            Kind::Foreign { bounds, .. } => *bounds,
-        };
-        if bounds.is_empty() {
-            continue;
-        }
-        let affine = object.placement.affine();
-        for i in 0..8 {
-            let pick = |bit: usize| {
-                if i >> bit & 1 == 0 {
-                    bounds.min[bit]
-                } else {
-                    bounds.max[bit]
-                }
-            };
-            let p = affine.transform_point3(Vec3::new(pick(0), pick(1), pick(2)));
-            low = low.min(p);
-            high = high.max(p);
-        }
-    }
-    low.cmple(high).all().then_some(high - low)
 }
 
 #[cfg(test)]

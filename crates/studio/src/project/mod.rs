@@ -2,6 +2,7 @@
 
 mod begin;
 mod keep;
+mod leave;
 mod shelf;
 
 use std::path::{Path, PathBuf};
@@ -15,6 +16,8 @@ use midair_mesh::{MeshHash, TriMesh};
 pub use begin::{Begin, Recoverables};
 pub(crate) use begin::{attach, begin, install};
 pub use keep::KeepPlugin;
+pub(crate) use leave::PANEL as LEAVE_PANEL;
+pub use leave::{Answer, Leaving, Then};
 pub use shelf::Shelf;
 
 use crate::notice::Notices;
@@ -73,6 +76,8 @@ pub struct Project {
     history: History,
     path: Option<PathBuf>,
     work: PathBuf,
+    /// What is not saved was given up by the person: its journal goes with it.
+    give_up: bool,
 }
 
 impl Project {
@@ -82,6 +87,7 @@ impl Project {
             history,
             path,
             work,
+            give_up: false,
         }
     }
 
@@ -148,6 +154,11 @@ impl Project {
         self.history.take_warnings()
     }
 
+    /// What was to take its place did not come: it is worked on after all.
+    pub(crate) fn keep(&mut self) {
+        self.give_up = false;
+    }
+
     /// The work is in this file now.
     pub(crate) fn saved(&mut self, path: PathBuf) {
         self.history.note_saved(&path);
@@ -157,7 +168,7 @@ impl Project {
     /// Another project takes its place: with nothing unsaved its journal is closed, otherwise it
     /// stays on disk.
     pub(crate) fn retire(&mut self) {
-        if !self.history.is_unsaved()
+        if (self.give_up || !self.history.is_unsaved())
             && let Some(journal) = self.history.detach()
         {
             journal.close();
@@ -210,4 +221,5 @@ pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Selection>();
     begin::plugin(app);
     shelf::plugin(app);
+    leave::plugin(app);
 }

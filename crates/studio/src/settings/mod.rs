@@ -4,6 +4,7 @@
 //! [`Command::Set`](crate::command::Command::Set) changes it, so that a session which changes a setting plays back. A
 //! session begins with the defaults, a person with what is kept in `settings.ron`.
 
+mod files;
 mod hands;
 mod keep;
 mod look;
@@ -13,6 +14,7 @@ mod units;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use files::FileSettings;
 pub use hands::HandsSettings;
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
@@ -29,6 +31,8 @@ pub struct Settings {
     pub hands: HandsSettings,
     /// In what lengths are read and written.
     pub units: UnitSettings,
+    /// What is remembered of files.
+    pub files: FileSettings,
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.

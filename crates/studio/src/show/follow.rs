@@ -210,7 +210,7 @@ fn show(
 /// The steps in the object's own frame at which it is shown, the finest first: the one that gives the
 /// document's step in the world, and half of it, since a screen shows what a quick update need not.
 /// In powers of two, so that scaling makes few of them.
-fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> Vec<f32> {
+pub(crate) fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> Vec<f32> {
     let scale = object.placement.scale.abs().max_element();
     let halvings = scale.max(1e-3).log2().ceil().clamp(-4.0, 6.0);
     let step = document.step() * (-halvings).exp2();

@@ -12,6 +12,7 @@ use midair_document::ObjectId;
 use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
+pub(crate) use follow::display_steps;
 pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
 pub use material::{MATERIALS, MaterialInfo};
 pub use room::{Room, RoomPlugin, is_software};

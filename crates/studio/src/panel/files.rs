@@ -1,0 +1,92 @@
+//! Choosing files: one dialog for opening, saving and bringing in.
+
+use std::path::PathBuf;
+
+use bevy_egui::egui::Context;
+use egui_file_dialog::FileDialog;
+
+use crate::command::{Command, Dialog};
+use crate::project::{Project, Then};
+
+/// The dialog, and what is asked with it.
+#[derive(Default)]
+pub struct Files {
+    open: Option<(Dialog, FileDialog)>,
+    /// Where one was last.
+    folder: Option<PathBuf>,
+}
+
+impl Files {
+    /// Asks for a file.
+    pub fn ask(&mut self, dialog: Dialog, project: &Project) {
+        let folder = self
+            .folder
+            .clone()
+            .or_else(|| project.path().and_then(|p| p.parent()).map(Into::into))
+            .unwrap_or_else(|| project.work_folder().to_owned());
+        // A folder that is not there yet is nothing to look into.
+        let folder = folder
+            .ancestors()
+            .find(|f| f.is_dir())
+            .map_or_else(|| PathBuf::from("."), Into::into);
+        let base = FileDialog::new().initial_directory(folder).as_modal(true);
+        let mut shown = match dialog {
+            Dialog::Open => base
+                .title("Open a document")
+                .add_file_filter_extensions("Midair documents", vec!["midair"])
+                .default_file_filter("Midair documents"),
+            Dialog::Import => base
+                .title("Bring meshes into the library")
+                .add_file_filter_extensions(
+                    "Meshes: GLB, OBJ, STL, PLY",
+                    vec!["glb", "gltf", "obj", "stl", "ply"],
+                )
+                .default_file_filter("Meshes: GLB, OBJ, STL, PLY"),
+            Dialog::SaveAs => base
+                .title("Save the document as")
+                .default_file_name(&format!("{}.midair", project.title())),
+        };
+        match dialog {
+            Dialog::Open => shown.pick_file(),
+            Dialog::Import => shown.pick_multiple(),
+            Dialog::SaveAs => shown.save_file(),
+        }
+        self.open = Some((dialog, shown));
+    }
+
+    /// Draws the dialog where it is open, and says what was chosen.
+    pub fn show(&mut self, ctx: &Context) -> Option<Command> {
+        let (dialog, shown) = self.open.as_mut()?;
+        shown.update(ctx);
+        let chosen = match dialog {
+            Dialog::Import => shown.take_picked_multiple(),
+            Dialog::Open | Dialog::SaveAs => shown.take_picked().map(|p| vec![p]),
+        };
+        let closed = *shown.state() != egui_file_dialog::DialogState::Open;
+        let dialog = *dialog;
+        if closed || chosen.is_some() {
+            self.open = None;
+        }
+        let mut chosen = chosen.filter(|c| !c.is_empty())?;
+        self.folder = chosen[0].parent().map(Into::into);
+        Some(match dialog {
+            Dialog::Open => Command::Leave(Then::Open(chosen.swap_remove(0))),
+            Dialog::Import => Command::Import(chosen),
+            Dialog::SaveAs => {
+                let path = chosen.swap_remove(0);
+                Command::SaveAs(if has_ending(&path, &["midair"]) {
+                    path
+                } else {
+                    let mut name = path.into_os_string();
+                    name.push(".midair");
+                    name.into()
+                })
+            }
+        })
+    }
+}
+
+fn has_ending(file: &std::path::Path, endings: &[&str]) -> bool {
+    file.extension()
+        .is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
+}
