@@ -163,31 +163,14 @@ impl Focus {
     /// One step within the panel, by the D-pad, or by the arrows where nothing else needs them.
     fn walk(&mut self, ctx: &egui::Context, input: &mut EguiInput, controls: &Controls) {
         let mut steps = Vec::new();
-        let walks = self.walks();
-        for (control, arrow, along) in [
-            (Control::PanelUp, egui::Key::ArrowUp, egui::vec2(0.0, -1.0)),
-            (
-                Control::PanelRight,
-                egui::Key::ArrowRight,
-                egui::vec2(1.0, 0.0),
-            ),
-            (
-                Control::PanelDown,
-                egui::Key::ArrowDown,
-                egui::vec2(0.0, 1.0),
-            ),
-            (
-                Control::PanelLeft,
-                egui::Key::ArrowLeft,
-                egui::vec2(-1.0, 0.0),
-            ),
+        for (control, along) in [
+            (Control::PanelUp, egui::vec2(0.0, -1.0)),
+            (Control::PanelRight, egui::vec2(1.0, 0.0)),
+            (Control::PanelDown, egui::vec2(0.0, 1.0)),
+            (Control::PanelLeft, egui::vec2(-1.0, 0.0)),
         ] {
             if controls.fired(control) {
-                if walks {
-                    input.events.push(key(arrow, true));
-                } else {
-                    steps.push(along);
-                }
+                steps.push(along);
             }
         }
         let mut tabs = Vec::new();
@@ -213,7 +196,7 @@ impl Focus {
                 egui::Key::ArrowLeft if !text && !slider => egui::vec2(-1.0, 0.0),
                 _ => return true,
             };
-            if modifiers.any() || walks {
+            if modifiers.any() {
                 return true;
             }
             steps.push(along);

@@ -28,8 +28,6 @@ pub struct Focus {
     kind: Option<WidgetType>,
     /// It takes letters.
     text: bool,
-    /// For how many passes it has had it.
-    passes: u32,
     /// What is written on it.
     label: String,
     /// The region that had it last.
@@ -85,11 +83,6 @@ impl Focus {
         self.inside = false;
         self.wanted = None;
         self.given = None;
-    }
-
-    /// Whether it walks by itself: a tree says nothing of what it is and moves within by the arrows.
-    fn walks(&self) -> bool {
-        self.kind.is_none() && !self.text && self.passes > 3
     }
 
     fn is_slider(&self) -> bool {
@@ -148,7 +141,6 @@ impl Focus {
             self.give(ctx, first);
         }
         self.text = self.given.is_none() && ctx.text_edit_focused();
-        self.passes = self.passes.saturating_add(1);
         let focused = self.given.or(ctx.memory(|m| m.focused()));
         let found = focused.and_then(|id| {
             self.regions.iter().find_map(|r| {
@@ -190,7 +182,6 @@ impl Focus {
     fn give(&mut self, ctx: &egui::Context, spot: Spot) {
         self.spot = Some(spot);
         self.kind = None;
-        self.passes = 0;
         self.label.clear();
         self.given = Some(spot.id);
         ctx.request_repaint();
