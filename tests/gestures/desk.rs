@@ -254,7 +254,7 @@ impl Desk {
         let logical = match code {
             KeyCode::Tab => Key::Tab,
             KeyCode::F1 => Key::F1,
-            KeyCode::F2 => Key::F2,
+            KeyCode::F3 => Key::F3,
             KeyCode::F6 => Key::F6,
             KeyCode::Escape => Key::Escape,
             KeyCode::Enter => Key::Enter,

@@ -27,7 +27,7 @@ const KEYS: [(KeyCode, Key); 24] = [
     (KeyCode::Enter, Key::Enter),
     (KeyCode::Escape, Key::Escape),
     (KeyCode::F6, Key::F6),
-    (KeyCode::F2, Key::F2),
+    (KeyCode::F3, Key::F3),
     (KeyCode::ArrowDown, Key::ArrowDown),
     (KeyCode::ArrowRight, Key::ArrowRight),
     (KeyCode::ArrowUp, Key::ArrowUp),

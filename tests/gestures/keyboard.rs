@@ -126,7 +126,7 @@ fn a_menu_is_opened_and_used_by_keys() {
 #[test]
 fn a_key_is_bound_anew_by_pressing_it_and_kept() {
     let mut desk = Desk::new();
-    desk.strike_one(KeyCode::F2);
+    desk.strike_one(KeyCode::F3);
     assert!(desk.is_open("controls"));
     desk.strike_one(KeyCode::F6);
     for _ in 0..6 {
@@ -218,4 +218,39 @@ fn the_left_handed_switch_mirrors_the_hands() {
     assert_eq!(desk.warnings(), [] as [String; 0]);
     let work = midair_studio::project::Places::below(desk.home.path()).work;
     assert_eq!(std::fs::read_dir(work).unwrap().count(), 1);
+}
+
+#[test]
+fn the_arrows_reach_what_a_long_list_does_not_show() {
+    let mut desk = Desk::new();
+    desk.plug();
+    desk.take("Cube");
+    for name in ["Sphere", "Cone"] {
+        desk.take(name);
+    }
+    let press = |desk: &mut Desk, code: KeyCode, letter: &str| {
+        let control = (KeyCode::ControlLeft, Key::Control);
+        desk.strike(&[control, (code, Key::Character(letter.into()))]);
+    };
+    for _ in 0..4 {
+        press(&mut desk, KeyCode::KeyA, "a");
+        press(&mut desk, KeyCode::KeyD, "d");
+    }
+    let objects = desk.document().len();
+    assert!(objects >= 40, "{objects}");
+    desk.panel("library", false);
+    desk.panel("outline", true);
+    for _ in 0..6 {
+        desk.strike_one(KeyCode::F6);
+        if desk.focus().region().is_some_and(|r| r.name == "outline") {
+            break;
+        }
+    }
+    let mut seen = HashSet::new();
+    for _ in 0..objects + 20 {
+        desk.strike_one(KeyCode::ArrowDown);
+        seen.extend(desk.focus().spot().map(|s| s.id));
+    }
+    assert_eq!(desk.focus().region().map(|r| r.name), Some("outline"));
+    assert!(seen.len() >= objects, "{} of {objects}", seen.len());
 }

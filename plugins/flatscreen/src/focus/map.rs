@@ -186,8 +186,14 @@ pub(crate) fn next(spots: &[Spot], from: Rect, along: Vec2) -> Option<Spot> {
             };
             return Some(ahead + 0.1 * aside);
         }
-        let aside = if upright { gap.x } else { gap.y }.abs();
-        (aside <= ahead).then_some(ahead + 3.0 * aside)
+        let (one, other) = if upright {
+            (spot.rect.x_range(), from.x_range())
+        } else {
+            (spot.rect.y_range(), from.y_range())
+        };
+        // Between their edges, so that a small arrow leads to the broad rows under it.
+        let aside = (one.min - other.max).max(other.min - one.max).max(0.0);
+        (2.0 * aside <= ahead).then_some(ahead + 3.0 * aside)
     };
     spots
         .iter()
