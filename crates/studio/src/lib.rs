@@ -11,11 +11,15 @@ pub mod notice;
 pub mod objects;
 pub mod panel;
 pub mod pick;
+pub mod plane;
 pub mod project;
+pub mod ruler;
 pub mod settings;
 pub mod show;
+pub mod snap;
 pub mod tools;
 pub mod units;
+pub mod world;
 
 use bevy::prelude::*;
 
@@ -70,7 +74,8 @@ impl Plugin for StudioPlugin {
             evaluate::plugin,
             pick::plugin,
             show::plugin,
-        ));
+        ))
+        .add_plugins((plane::plugin, ruler::plugin, snap::plugin, world::plugin));
     }
 
     fn finish(&self, app: &mut App) {

@@ -13,6 +13,7 @@ use midair_studio::{
     project::{Project, Selection},
     settings::Settings,
     show::Drafts,
+    snap::Snapper,
 };
 
 use crate::{
@@ -297,6 +298,7 @@ pub(crate) fn grab(
     selection: Res<Selection>,
     mut draft: ResMut<Draft>,
     mut drafts: ResMut<Drafts>,
+    mut snapper: Snapper,
 ) {
     let document = project.document();
     for side in Side::BOTH {
@@ -337,7 +339,8 @@ pub(crate) fn grab(
     }
     for side in Side::BOTH {
         if let Phase::Holding { object, hold } = draft.phase(side) {
-            drafts.set(object, hold.placement(&hands.get(side).pose));
+            let wanted = hold.placement(&hands.get(side).pose);
+            drafts.set(object, snapper.place(object, &[], wanted, &hands, side));
         }
     }
     // A group, and what is selected together, moves as one.

@@ -55,6 +55,7 @@ fn control(action: Action) -> Option<Control> {
         Action::Right => Control::CrossRight,
         Action::Down => Control::CrossDown,
         Action::Left => Control::CrossLeft,
+        Action::Free => Control::SnapOff,
         Action::Centre | Action::Menu => return None,
     })
 }

@@ -6,7 +6,7 @@ use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     hands::{Action, Hands, Side},
     project::{Project, Shelf},
-    show::{Cues, ObjectMap},
+    show::{Cues, ObjectMap, Readouts},
 };
 
 use crate::bindings::{Bindings, Controls};
@@ -112,8 +112,7 @@ pub(crate) fn empty(
     Ok(())
 }
 
-/// A small ball at each hand, and while it holds something a plumb line to the ground, so that its depth
-/// can be read.
+/// A small ball at each hand; what lies below it is the studio's to show.
 pub(crate) fn hands(
     mut gizmos: Gizmos,
     hands: Res<Hands>,
@@ -121,10 +120,10 @@ pub(crate) fn hands(
     eye: Single<&Transform, With<Orbit>>,
 ) {
     for side in Side::BOTH {
-        let (leading, latched, holds) = if pad.leads() {
-            (pad.leading(), pad.is_latched(side), pad.holds())
+        let (leading, latched) = if pad.leads() {
+            (pad.leading(), pad.is_latched(side))
         } else {
-            (pointer.leading, pointer.is_latched(side), pointer.holds())
+            (pointer.leading, pointer.is_latched(side))
         };
         let leads = side == leading;
         if !leads && !latched && !pointer.stretching {
@@ -137,15 +136,49 @@ pub(crate) fn hands(
             Color::srgb(0.75, 0.75, 0.80)
         };
         // The same size on screen wherever it is.
-        let size = 0.003 * tip.distance(eye.translation);
-        gizmos.sphere(tip, size, colour);
-        if holds || latched || pad.leads() {
-            gizmos.line(tip, tip.with_y(0.0), colour.with_alpha(0.5));
-            gizmos.circle(
-                Isometry3d::new(tip.with_y(0.001), Quat::from_rotation_arc(Vec3::Z, Vec3::Y)),
-                4.0 * size,
-                colour.with_alpha(0.7),
-            );
-        }
+        gizmos.sphere(tip, 0.003 * tip.distance(eye.translation), colour);
     }
+}
+
+/// Lengths, angles and scales beside what they are about.
+pub(crate) fn readouts(
+    mut contexts: EguiContexts,
+    readouts: Res<Readouts>,
+    camera: Single<(&Camera, &Transform), With<Orbit>>,
+    screen: Res<Screen>,
+) -> Result {
+    let ctx = contexts.ctx_mut()?;
+    let (camera, eye) = camera.into_inner();
+    let Some(view) = screen.view() else {
+        return Ok(());
+    };
+    let painter = ctx
+        .layer_painter(egui::LayerId::background())
+        .with_clip_rect(view);
+    let mut taken: Vec<egui::Rect> = Vec::new();
+    for readout in &readouts.0 {
+        let eye = GlobalTransform::from(*eye);
+        let Ok(at) = camera.world_to_viewport(&eye, readout.at) else {
+            continue;
+        };
+        let galley = painter.layout_no_wrap(
+            readout.text.clone(),
+            egui::FontId::proportional(14.0),
+            egui::Color32::WHITE,
+        );
+        let size = galley.size() + egui::vec2(12.0, 6.0);
+        let mut rect = egui::Rect::from_center_size(egui::pos2(at.x, at.y + 24.0), size);
+        // One below the other where they would lie upon each other.
+        while let Some(other) = taken.iter().find(|r| r.intersects(rect)) {
+            rect = rect.translate(egui::vec2(0.0, other.bottom() - rect.top() + 2.0));
+        }
+        taken.push(rect);
+        painter.rect_filled(rect, 4.0, egui::Color32::from_black_alpha(190));
+        painter.galley(
+            rect.center() - 0.5 * galley.size(),
+            galley,
+            egui::Color32::WHITE,
+        );
+    }
+    Ok(())
 }

@@ -1,13 +1,17 @@
 //! A window with mouse, keyboard and gamepad: the pointer or a stick is the leading hand.
 //!
-//! Left acts and drags, middle (or Alt and left) orbits, Shift and middle pans, the wheel zooms, or
-//! while something is dragged moves it nearer or farther. The other hand stays where it is and
-//! keeps what it holds; Tab swaps them.
+//! Left acts and drags, on nothing it draws a box that selects; middle (or Alt and left) orbits, Shift and
+//! middle pans, right looks around and flies, the wheel zooms towards the pointer, or while something is
+//! dragged moves it nearer or farther. What is selected has handles to move, turn and scale it by. The
+//! other hand stays where it is and keeps what it holds; Tab swaps them.
 
+mod band;
 pub mod bindings;
 mod controls_panel;
+mod exact;
 pub mod focus;
 mod gamepad;
+mod gizmo;
 mod hints;
 mod keys;
 mod labels;
@@ -17,13 +21,15 @@ mod place;
 mod pointer;
 mod ring;
 mod stretch;
+mod view;
 
 use bevy::prelude::*;
 use bevy_egui::{EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
 use leafwing_input_manager::plugin::InputManagerSystem;
-use midair_studio::{StudioSet, hands::AdvanceHands};
+use midair_studio::{StudioSet, hands::AdvanceHands, snap::ClearGuides};
 
 pub use gamepad::Pad;
+pub use gizmo::{Gizmo, Mode};
 pub use keys::key_name;
 pub use orbit::Orbit;
 pub use pointer::Pointer;
@@ -35,6 +41,18 @@ impl Plugin for FlatscreenPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(EguiPlugin::default())
             .init_resource::<Pointer>()
+            .init_resource::<Gizmo>()
+            .insert_gizmo_config(
+                gizmo::Overlay,
+                GizmoConfig {
+                    depth_bias: -1.0,
+                    line: GizmoLineConfig {
+                        width: 3.0,
+                        ..default()
+                    },
+                    ..default()
+                },
+            )
             .init_resource::<Pad>()
             .init_resource::<focus::Typing>()
             .init_resource::<ring::Ring>()
@@ -52,28 +70,34 @@ impl Plugin for FlatscreenPlugin {
             .add_systems(
                 Update,
                 (
+                    view::carry,
                     gamepad::lead,
                     gamepad::camera,
                     orbit::steer,
+                    // Handles come before what lies behind them.
+                    gizmo::steer,
                     // The hand follows the camera of this frame.
-                    (pointer::point, stretch::stretch)
+                    (pointer::point, band::drag, stretch::stretch)
                         .chain()
                         .run_if(|pad: Res<Pad>| !pad.leads()),
                     gamepad::hands,
                     keys::commands,
+                    exact::commands,
                     ring::turn,
                     attend,
                 )
                     .chain()
                     .in_set(StudioSet::Gather)
+                    .after(ClearGuides)
                     .before(AdvanceHands),
             )
             .add_systems(
                 Update,
                 (
-                    orbit::frame,
-                    labels::hands,
                     gamepad::rumble,
+                    view::jump,
+                    gizmo::draw,
+                    labels::hands,
                     panels::title,
                     panels::drop,
                     panels::close_window,
@@ -89,6 +113,8 @@ impl Plugin for FlatscreenPlugin {
                     ring::show,
                     labels::objects,
                     labels::empty,
+                    labels::readouts,
+                    band::show,
                 )
                     .chain(),
             );

@@ -1,7 +1,12 @@
-//! Where a picked component appears: on the ground where one looks, beside what is there.
+//! Where a picked component appears: on the work plane where one looks, beside what is there.
 
 use bevy::prelude::*;
-use midair_studio::{document::Kind, project::Project};
+use midair_field::Placement;
+use midair_studio::{
+    plane::WorkPlane,
+    project::Project,
+    snap::{box_of, own_box},
+};
 
 /// Metres left between neighbours.
 const GAP: f32 = 0.05;
@@ -11,22 +16,35 @@ const STEPS: i32 = 6;
 /// A box in world metres.
 pub(crate) type Corners = (Vec3, Vec3);
 
-/// The place nearest to where `towards` meets the ground at which a thing from `low` to `high` about its
+/// The place nearest to where `towards` meets the work plane (the ground, unless it is in use) at which a thing from `low` to `high` about its
 /// origin stands in nothing else's way: first to the sides, then nearer and farther.
 pub(crate) fn free_spot(
     project: &Project,
+    plane: &WorkPlane,
     (low, high): Corners,
     eye: &Transform,
     towards: Ray3d,
 ) -> Vec3 {
-    let reach = towards
-        .intersect_plane(Vec3::ZERO, InfinitePlane3d::new(Vec3::Y))
-        .filter(|&d| d > 0.0 && d < 12.0)
-        .unwrap_or(1.5);
-    // On the lines of the ground, and beside each other along them.
-    let middle = ((towards.get_point(reach) / GAP).round() * GAP).with_y(-low.y);
-    let right = axis(*eye.right());
-    let ahead = Vec3::Y.cross(right);
+    let plane = if plane.shown {
+        *plane
+    } else {
+        WorkPlane::default()
+    };
+    let met = plane
+        .meet(&towards, 12.0)
+        .unwrap_or_else(|| towards.get_point(1.5));
+    // How far its box reaches below its origin, as the plane sees it.
+    let upright = Placement {
+        rotation: plane.rotation.inverse(),
+        ..Placement::IDENTITY
+    };
+    let beneath = box_of(&upright, (low, high)).0.y;
+    // On the lines of the plane, and beside each other along them.
+    let lines = plane.to_local(met);
+    let middle = plane.to_world(((lines / GAP).round() * GAP).with_y(-beneath));
+    let right = axis(plane.rotation.inverse() * *eye.right());
+    let ahead = plane.rotation * Vec3::Y.cross(right);
+    let right = plane.rotation * right;
     let size = high - low;
     let step = ((0.25 * (size.x.max(size.z) + GAP)) / GAP).ceil() * GAP;
     let taken = taken(project);
@@ -58,30 +76,8 @@ fn axis(direction: Vec3) -> Vec3 {
 
 /// The boxes of everything that is there.
 fn taken(project: &Project) -> Vec<Corners> {
-    let document = project.document();
-    document
-        .objects()
-        .filter_map(|(_, object)| {
-            let (low, high) = match &object.kind {
-                Kind::Solid(recipe) => (recipe.bounds().min, recipe.bounds().max),
-                Kind::Foreign { mesh, .. } => {
-                    let bounds = project.mesh(mesh)?.bounds();
-                    (bounds.min, bounds.max)
-                }
-            };
-            if !low.cmple(high).all() {
-                return None;
-            }
-            let affine = object.placement.affine();
-            let centre = affine.transform_point3(low.midpoint(high));
-            let half = 0.5 * (high - low);
-            let turned = affine.matrix3;
-            let reach = Vec3::from(
-                turned.x_axis.abs() * half.x
-                    + turned.y_axis.abs() * half.y
-                    + turned.z_axis.abs() * half.z,
-            );
-            Some((centre - reach, centre + reach))
-        })
+    let objects = project.document().objects();
+    objects
+        .filter_map(|(_, object)| Some(box_of(&object.placement, own_box(project, object)?)))
         .collect()
 }

@@ -6,18 +6,24 @@ use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
     command::Command,
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
+    objects::How,
     pick::{self, Proxy, Touch},
+    plane::WorkPlane,
     project::{Project, Shelf},
+    ruler::{MeasureAsk, Ruler},
     settings::Settings,
+    world::Similarity,
 };
 
+use crate::band::{self, Band};
 use crate::bindings::{Control, Controls, Device};
+use crate::gizmo::Gizmo;
 use crate::orbit::{Orbit, lines};
 use crate::panels::Screen;
 use crate::place;
 
 /// A click may tremble this many pixels before it is a drag.
-const TREMBLE: f32 = 3.0;
+pub(crate) const TREMBLE: f32 = 3.0;
 
 /// The leading hand, and the one that stays where it is.
 #[derive(Resource, Clone, Debug)]
@@ -33,6 +39,10 @@ pub struct Pointer {
     /// How the wand is turned against the camera.
     turn: Quat,
     over: bool,
+    /// The point and the outward normal of the face under the pointer.
+    pub(crate) face: Option<(Vec3, Vec3)>,
+    /// A box that is drawn to select what lies in it.
+    pub(crate) band: Option<Band>,
     /// Both hands pull at one thing.
     pub(crate) stretching: bool,
     /// Enter ended something and is not to finish as well until it is up again.
@@ -46,6 +56,8 @@ pub struct Pointer {
 struct Grip {
     /// Metres from the camera, along its view.
     depth: f32,
+    /// The plane it is dragged along, if one is in use.
+    plane: Option<(Vec3, Dir3)>,
     /// Where the button went down, in pixels.
     from: Vec2,
     /// Whether it was dragged yet; a click that trembles moves nothing.
@@ -64,6 +76,8 @@ impl Default for Pointer {
             acting: false,
             turn: Quat::IDENTITY,
             over: false,
+            face: None,
+            band: None,
             stretching: false,
             enter_spent: false,
             picked: Vec::new(),
@@ -96,36 +110,56 @@ impl Pointer {
         self.latched = [false; 2];
         self.grip = None;
         self.acting = false;
+        self.band = None;
+    }
+
+    /// The world was moved: the hands stay where they are in the room.
+    pub(crate) fn carry(&mut self, by: &Similarity) {
+        self.poses = self.poses.map(|pose| by.pose(&pose));
     }
 }
 
+/// What the devices say, and what is under the pointer for others.
+type Devices<'w, 's> = (
+    Res<'w, Controls>,
+    Res<'w, AccumulatedMouseScroll>,
+    MessageReader<'w, 's, CursorMoved>,
+    Query<'w, 's, &'static Window>,
+);
+
+/// What of the scene the pointer meets.
+type Scene<'w, 's> = (
+    ReadRapierContext<'w, 's>,
+    Query<'w, 's, &'static Proxy>,
+    Res<'w, Touch>,
+    Res<'w, Project>,
+    Res<'w, Shelf>,
+    Res<'w, WorkPlane>,
+);
+
 pub(crate) fn point(
-    (controls, settings, scroll, mut moved): (
-        Res<Controls>,
-        Res<Settings>,
-        Res<AccumulatedMouseScroll>,
-        MessageReader<CursorMoved>,
-    ),
-    screen: Res<Screen>,
-    windows: Query<&Window>,
+    (controls, scroll, mut moved, windows): Devices,
+    (screen, gizmo, settings): (Res<Screen>, Res<Gizmo>, Res<Settings>),
     camera: Single<(&Camera, &Transform), With<Orbit>>,
-    context: ReadRapierContext,
-    proxies: Query<&Proxy>,
-    touch: Res<Touch>,
-    (project, shelf): (Res<Project>, Res<Shelf>),
+    (context, proxies, touch, project, shelf, plane): Scene,
     mut pointer: ResMut<Pointer>,
+    mut ruler: ResMut<Ruler>,
     mut input: ResMut<HandsInput>,
     mut commands: MessageWriter<Command>,
 ) {
     let (camera, eye) = camera.into_inner();
-    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
+    let pressed = |control| controls.pressed_on(control, Device::Keys);
+    let travelled: Vec2 = moved
+        .read()
+        .filter_map(|m| m.delta)
+        .filter(|d| d.is_finite())
+        .sum();
     let cursor = windows.iter().find_map(Window::cursor_position);
+    let cursor = cursor.filter(|at| at.is_finite());
     let panel = screen.covers(cursor);
-    let down = |control| controls.pressed_on(control, Device::Keys);
-    let began = |control| controls.just_pressed(control) && down(control);
-    let free = !panel && !pointer.stretching;
-    let started = began(Control::Act) && free;
-    let grabs = began(Control::Grab) && free;
+    let free = !panel && !pointer.stretching && !gizmo.has_pointer();
+    let began = |control| controls.just_pressed(control) && pressed(control) && free;
+    let clicked = began(Control::Act);
     if controls.just_pressed(Control::SwapHands) && !pointer.stretching {
         let side = pointer.leading;
         // What is held while one swaps stays held.
@@ -134,13 +168,18 @@ pub(crate) fn point(
         pointer.leading = side.other();
     }
     let side = pointer.leading;
+    // The ruler and what joins the selection take the click for themselves.
+    let taken = ruler.on || pressed(Control::SelectMore);
+    let started = clicked && !taken;
+    let grabs = began(Control::Grab) && !taken;
     pointer.acting |= started;
     // A latched hand that leads again lets go where it is.
     let unlatched = std::mem::take(&mut pointer.latched[side as usize]);
     let ray = cursor.and_then(|c| ray(camera, eye, c));
+    let mut pointed = None;
     if let Some(mut grip) = pointer.grip {
         // In the frame of the release too: it comes to rest where it was dragged to.
-        if controls.pressed(Control::Turn) {
+        if pressed(Control::Turn) {
             let turn = Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
                 * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01);
             pointer.turn =
@@ -148,19 +187,17 @@ pub(crate) fn point(
             grip.spent += travelled;
             grip.moved |= travelled != Vec2::ZERO;
         } else if scroll.delta.y != 0.0 {
-            grip.depth = (grip.depth * 1.05_f32.powf(lines(&scroll))).clamp(0.05, 40.0);
-            grip.moved = true;
+            grip.nearer(lines(&scroll), eye);
         }
         if let Some(at) = cursor.map(|c| c - grip.spent) {
             grip.moved |= at.distance(grip.from) > TREMBLE;
             if grip.moved
                 && let Some(ray) = self::ray(camera, eye, at)
             {
-                let along = ray.direction.dot(*eye.forward()).max(0.1);
-                pointer.poses[side as usize] = Pose {
-                    position: ray.get_point(grip.depth / along),
-                    rotation: (eye.rotation * pointer.turn).normalize(),
-                };
+                let rotation = (eye.rotation * pointer.turn).normalize();
+                let pose = &mut pointer.poses[side as usize];
+                let position = grip.at(&ray, eye).unwrap_or(pose.position);
+                *pose = Pose { position, rotation };
             }
         }
         pointer.grip = Some(grip);
@@ -173,31 +210,54 @@ pub(crate) fn point(
                     .single()
                     .ok()
                     .and_then(|c| pick::cast(&c, &proxies, ray.origin, ray.direction));
-                let position = hit.map_or_else(|| on_ground(&ray, eye), |h| h.point);
+                let position = hit.map_or_else(|| on_plane(&ray, eye, &plane), |h| h.point);
                 // A small thing is touched from a fingertip's breadth away as well.
-                pointer.over = hit.is_some() || touch.get(side).is_some();
+                let touched = touch.get(side).map(|t| t.object);
+                let object = hit.map(|h| h.object).or(touched);
+                pointer.over = object.is_some();
+                pointer.face = hit.map(|h| (h.point, h.normal));
+                pointed = Some(position);
+                if clicked && ruler.on {
+                    commands.write(Command::Measure(MeasureAsk::Point(position)));
+                } else if clicked && !started {
+                    let ids: Vec<_> = object.into_iter().collect();
+                    if !ids.is_empty() {
+                        commands.write(band::select(ids, How::Toggle));
+                    }
+                }
                 if grabs && pointer.over {
                     pointer.grip = cursor.map(|from| Grip {
                         depth: (position - eye.translation).dot(*eye.forward()),
+                        plane: plane.shown.then(|| (position, plane.normal())),
                         from,
                         moved: false,
                         spent: Vec2::ZERO,
                     });
+                }
+                if clicked && !pointer.over && !ruler.on {
+                    pointer.band = cursor.map(|from| Band::new(from, !started));
                 }
                 Pose {
                     position,
                     rotation: eye.rotation,
                 }
             }
-            None => rest(eye, side),
+            None => {
+                pointer.face = None;
+                rest(eye, side)
+            }
         };
+    }
+    let pointed = pointed.filter(|_| ruler.on);
+    if ruler.pointed != pointed {
+        ruler.pointed = pointed;
     }
     let other = side.other();
     if !pointer.latched[other as usize] {
         pointer.poses[other as usize] = rest(eye, other);
     }
-    pointer.acting &= down(Control::Act);
-    if !down(Control::Grab) {
+    pointer.acting &= pressed(Control::Act);
+    if !pressed(Control::Grab) {
         pointer.grip = None;
     }
     // Where it was picked there is no room: it goes where one looks.
@@ -209,25 +269,29 @@ pub(crate) fn point(
             let corners = (bounds.min, bounds.max);
             if !bounds.is_empty() {
                 pointer.poses[side as usize] =
-                    Pose::at(place::free_spot(&project, corners, eye, towards));
+                    Pose::at(place::free_spot(&project, &plane, corners, eye, towards));
             }
         }
         commands.write(Command::Place { component, side });
     }
-    let mut actions = ActionSet::NONE;
-    actions.set(Action::Act, pointer.acting);
-    actions.set(Action::Grab, pointer.grip.is_some());
-    pointer.enter_spent &= controls.pressed(Control::Finish);
-    for (control, action) in [
+    let mut actions: ActionSet = [
         (Control::Finish, Action::Finish),
         (Control::Delete, Action::Delete),
         (Control::CrossUp, Action::Up),
         (Control::CrossRight, Action::Right),
         (Control::CrossDown, Action::Down),
         (Control::CrossLeft, Action::Left),
-    ] {
-        let spent = control == Control::Finish && pointer.enter_spent;
-        actions.set(action, controls.pressed(control) && !spent);
+    ]
+    .into_iter()
+    .filter(|&(control, _)| pressed(control))
+    .map(|(_, action)| action)
+    .collect();
+    actions.set(Action::Act, pointer.acting);
+    actions.set(Action::Grab, pointer.grip.is_some());
+    actions.set(Action::Free, controls.pressed(Control::SnapOff));
+    pointer.enter_spent &= pressed(Control::Finish);
+    if pointer.enter_spent {
+        actions.set(Action::Finish, false);
     }
     for hand in Side::BOTH {
         let mut held = ActionSet::NONE;
@@ -238,18 +302,16 @@ pub(crate) fn point(
             swipe: None,
         };
     }
-    // *Save* is one hand's and *library* the other's: a key lends them the pointer's place.
-    if controls.pressed(Control::SaveObject) && !pointer.stretching {
+    // *Save* is the other hand's and *library* the leading one's: a key lends them the pointer's place.
+    if pressed(Control::SaveObject) && !pointer.stretching {
         let frame = input.side(settings.hands.off());
         frame.pose = Some(pointer.poses[side as usize]);
         frame.down.set(Action::Save, true);
     }
     let main = input.side(settings.hands.main());
-    main.down
-        .set(Action::Library, controls.pressed(Control::Library));
-    main.down
-        .set(Action::Modes, controls.pressed(Control::Modes));
-    if controls.pressed(Control::Cancel) {
+    main.down.set(Action::Library, pressed(Control::Library));
+    main.down.set(Action::Modes, pressed(Control::Modes));
+    if pressed(Control::Cancel) {
         for hand in Side::BOTH {
             input.side(hand).down.set(Action::Cancel, true);
         }
@@ -259,6 +321,33 @@ pub(crate) fn point(
         position: eye.translation,
         rotation: eye.rotation,
     });
+}
+
+impl Grip {
+    /// The wheel: nearer or farther, or off the plane that it is dragged along.
+    fn nearer(&mut self, lines: f32, eye: &Transform) {
+        match &mut self.plane {
+            Some((through, normal)) => {
+                let away = through.distance(eye.translation);
+                *through += **normal * (0.02 * away * lines);
+            }
+            None => self.depth = (self.depth * 1.05_f32.powf(lines)).clamp(0.05, 40.0),
+        }
+        self.moved = true;
+    }
+
+    /// Where it is dragged to; `None` where the plane is seen from its edge.
+    fn at(&self, ray: &Ray3d, eye: &Transform) -> Option<Vec3> {
+        let Some((through, normal)) = self.plane else {
+            let along = ray.direction.dot(*eye.forward()).max(0.1);
+            return Some(ray.get_point(self.depth / along));
+        };
+        if ray.direction.dot(*normal).abs() < 0.03 {
+            return None;
+        }
+        let far = ray.intersect_plane(through, InfinitePlane3d::new(*normal))?;
+        (far > 0.0 && far < 40.0).then(|| ray.get_point(far))
+    }
 }
 
 /// An empty hand hangs behind the eyes, where it touches and hides nothing.
@@ -287,12 +376,44 @@ fn ray_through(camera: &Camera, eye: &Transform, at: Option<Vec2>) -> Ray3d {
     })
 }
 
-/// Where nothing is hit: on the ground if that is near, else as far away as the origin.
-fn on_ground(ray: &Ray3d, eye: &Transform) -> Vec3 {
-    let ground = InfinitePlane3d::new(Vec3::Y);
-    let reach = ray
-        .intersect_plane(Vec3::ZERO, ground)
-        .filter(|&d| d > 0.0 && d < 30.0)
-        .unwrap_or(eye.translation.length().clamp(0.5, 10.0));
-    ray.get_point(reach)
+/// Where nothing is hit: on the work plane if it is near (the ground, unless it is in use), else as far
+/// away as the origin.
+fn on_plane(ray: &Ray3d, eye: &Transform, plane: &WorkPlane) -> Vec3 {
+    let plane = if plane.shown {
+        *plane
+    } else {
+        WorkPlane::default()
+    };
+    let far = || ray.get_point(eye.translation.length().clamp(0.5, 10.0));
+    plane.meet(ray, 30.0).unwrap_or_else(far)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drag_along_a_plane_stays_on_it_and_the_wheel_lifts_it() {
+        let eye = Transform::from_xyz(0.0, 1.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y);
+        let mut grip = Grip {
+            depth: 1.0,
+            plane: Some((Vec3::ZERO, Dir3::Y)),
+            from: Vec2::ZERO,
+            moved: true,
+            spent: Vec2::ZERO,
+        };
+        let towards = |x, y, z| Dir3::new(Vec3::new(x, y, z)).unwrap();
+        let ray = |d| Ray3d {
+            origin: eye.translation,
+            direction: d,
+        };
+        let at = grip.at(&ray(towards(0.3, -1.0, -1.0)), &eye).unwrap();
+        assert!(at.distance(Vec3::new(0.3, 0.0, 0.0)) < 1e-5, "{at}");
+        // Seen from its edge, or beyond the horizon, it stays where it is.
+        assert_eq!(grip.at(&ray(towards(0.0, 0.01, -1.0)), &eye), None);
+        assert_eq!(grip.at(&ray(towards(0.0, 1.0, -1.0)), &eye), None);
+        grip.nearer(2.0, &eye);
+        let at = grip.at(&ray(towards(0.3, -1.0, -1.0)), &eye).unwrap();
+        assert!(at.y > 0.01, "{at}");
+    }
 }

@@ -1,7 +1,11 @@
-//! Both hands grip what the pointer touches, and moving the pointer moves them apart.
+//! S: both hands grip what the pointer touches, and moving the pointer moves them apart. Over nothing they
+//! grip the world.
 
 use bevy::prelude::*;
-use midair_studio::hands::{Action, HandsInput, Pose, Side};
+use midair_studio::{
+    hands::{Action, HandsInput, Pose, Side},
+    world::{Similarity, WorldView},
+};
 
 use crate::bindings::{Control, Controls};
 use crate::orbit::Orbit;
@@ -16,6 +20,8 @@ const DOUBLE: f32 = 180.0;
 pub(crate) struct Stretching {
     middle: Pose,
     along: Vec3,
+    /// Metres of world to a metre in the hands.
+    unit: f32,
     /// Pixels moved since it began.
     moved: f32,
     swipe: Option<Vec2>,
@@ -24,17 +30,23 @@ pub(crate) struct Stretching {
 pub(crate) fn stretch(
     mut stretching: Local<Option<Stretching>>,
     controls: Res<Controls>,
+    world: Res<WorldView>,
     mut moved: MessageReader<CursorMoved>,
     mut pointer: ResMut<Pointer>,
     eye: Single<&Transform, With<Orbit>>,
     mut input: ResMut<HandsInput>,
 ) {
-    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
+    let travelled: Vec2 = moved
+        .read()
+        .filter_map(|m| m.delta)
+        .filter(|d| d.is_finite())
+        .sum();
     let Some(now) = stretching.as_mut() else {
-        if controls.just_pressed(Control::Stretch) && pointer.is_over() && !pointer.holds() {
+        if controls.just_pressed(Control::Stretch) && !pointer.holds() {
             let begun = Stretching {
                 middle: pointer.pose(pointer.leading),
                 along: *eye.right(),
+                unit: 1.0,
                 moved: 0.0,
                 swipe: None,
             };
@@ -44,14 +56,18 @@ pub(crate) fn stretch(
         }
         return;
     };
+    if let Some(by) = &world.carry {
+        now.go_along(by);
+    }
     let cancelled = controls.just_pressed(Control::Cancel);
     let entered = controls.just_pressed(Control::Finish);
     let done = cancelled
         || entered
+        || controls.just_pressed(Control::Stretch)
+        || controls.just_pressed(Control::Act)
         // Undo takes the thing out of the hands.
-        || [Control::Stretch, Control::Act, Control::Undo, Control::Redo]
-            .into_iter()
-            .any(|c| controls.just_pressed(c));
+        || controls.just_pressed(Control::Undo)
+        || controls.just_pressed(Control::Redo);
     now.moved += travelled.x - travelled.y;
     for (control, swipe) in [
         (Control::AxisX, Vec2::Y),
@@ -74,9 +90,16 @@ pub(crate) fn stretch(
 }
 
 impl Stretching {
+    /// The world was moved: the hands stay where they are in the room.
+    fn go_along(&mut self, by: &Similarity) {
+        self.middle = by.pose(&self.middle);
+        self.along = by.rotation * self.along;
+        self.unit *= by.scale;
+    }
+
     /// Puts both hands where they pull. Everything but the grip and *cancel* is taken out of them.
     fn write(&self, input: &mut HandsInput, grip: bool) {
-        let apart = APART * (self.moved / DOUBLE).exp2();
+        let apart = self.unit * APART * (self.moved / DOUBLE).exp2();
         for (side, sign) in [(Side::Left, -0.5), (Side::Right, 0.5)] {
             let frame = input.side(side);
             frame.pose = Some(Pose {

@@ -252,6 +252,7 @@ fn action_bit(action: Action) -> u32 {
         Action::Left => 13,
         Action::Centre => 14,
         Action::Menu => 15,
+        Action::Free => 16,
     }
 }
 

@@ -149,10 +149,12 @@ fn handle(
             Command::New => errands.start(Errand::New, &project, &places),
             Command::Restore => errands.start(Errand::Restore, &project, &places),
             Command::Dismiss => errands.start(Errand::Dismiss, &project, &places),
-            // The room of objects reads it.
-            Command::Objects(_) => {}
-            // The tool itself reads it.
-            Command::Tool { .. } => {}
+            // Whose they are reads them.
+            Command::Tool { .. }
+            | Command::Objects(_)
+            | Command::Plane(_)
+            | Command::Measure(_)
+            | Command::World(_) => {}
         }
     }
     for warning in project.bypass_change_detection().take_warnings() {

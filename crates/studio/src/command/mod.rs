@@ -18,8 +18,11 @@ pub use errand::Errands;
 
 use crate::{
     hands::Side,
+    plane::PlaneAsk,
     project::{Answer, Then},
+    ruler::MeasureAsk,
     tools::ToolId,
+    world::WorldAsk,
 };
 
 /// One thing asked for.
@@ -101,6 +104,12 @@ pub enum Command {
         /// Whether it is to be seen.
         open: bool,
     },
+    /// Sets the work plane.
+    Plane(PlaneAsk),
+    /// Measures.
+    Measure(MeasureAsk),
+    /// Scales the world or puts it back.
+    World(WorldAsk),
     /// Something only one tool understands: its options, its panel's buttons.
     Tool {
         /// Which tool.

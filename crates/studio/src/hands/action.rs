@@ -39,11 +39,13 @@ pub enum Action {
     Centre,
     /// The menu button: pressed it is [`Action::Library`], held [`Action::Modes`].
     Menu,
+    /// Nothing snaps while it is held.
+    Free,
 }
 
 impl Action {
     /// Every action, in order.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Act,
         Self::Grab,
         Self::Finish,
@@ -60,6 +62,7 @@ impl Action {
         Self::Left,
         Self::Centre,
         Self::Menu,
+        Self::Free,
     ];
 }
 

@@ -38,7 +38,9 @@ fn read(places: Res<Places>, mut settings: ResMut<Settings>, mut notices: ResMut
                 ));
             }
         },
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            *settings = Settings::of_a_person();
+        }
         Err(error) => notices.warn(format!(
             "{} cannot be read: {error}. The usual settings are used.",
             path.display()

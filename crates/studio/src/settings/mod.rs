@@ -9,7 +9,9 @@ mod hands;
 mod keep;
 mod look;
 mod patch;
+mod snap;
 mod units;
+mod world;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -19,7 +21,9 @@ pub use hands::HandsSettings;
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
+pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
 pub use units::UnitSettings;
+pub use world::WorldSettings;
 
 /// Everything a person can set. A field that a file lacks has its default.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,6 +37,20 @@ pub struct Settings {
     pub units: UnitSettings,
     /// What is remembered of files.
     pub files: FileSettings,
+    /// What pulls at things that hands move.
+    pub snap: SnapSettings,
+    /// How two hands move the world.
+    pub world: WorldSettings,
+}
+
+impl Settings {
+    /// What a person finds who has set nothing yet; a session begins with the defaults instead.
+    pub fn of_a_person() -> Self {
+        Self {
+            snap: SnapSettings::of_a_person(),
+            ..Self::default()
+        }
+    }
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.

@@ -2,7 +2,9 @@
 
 mod cue;
 mod follow;
+mod guides;
 mod material;
+mod readout;
 mod room;
 
 use std::collections::BTreeMap;
@@ -15,6 +17,7 @@ pub use cue::{Cue, Cues, Tint};
 pub(crate) use follow::display_steps;
 pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
 pub use material::{MATERIALS, MaterialInfo};
+pub use readout::{Readout, Readouts};
 pub use room::{Room, RoomPlugin, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
@@ -63,4 +66,5 @@ pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Drafts>().init_resource::<Cues>();
     follow::plugin(app);
     material::plugin(app);
+    readout::plugin(app);
 }

@@ -80,7 +80,7 @@ pub struct RoomPlugin;
 
 impl Plugin for RoomPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(InfiniteGridPlugin)
+        app.add_plugins((InfiniteGridPlugin, super::guides::plugin))
             .init_resource::<Room>()
             .init_resource::<Air>()
             .insert_resource(DirectionalLightShadowMap { size: 1536 })

@@ -34,6 +34,8 @@ pub enum Group {
     Marks,
     /// Moving the view.
     View,
+    /// Gizmo, snaps, work plane, ruler.
+    Exact,
     /// Steps and selection.
     Edit,
     /// Files.
@@ -44,10 +46,11 @@ pub enum Group {
 
 impl Group {
     /// All, in the order in which people read them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Hands,
         Self::Marks,
         Self::View,
+        Self::Exact,
         Self::Edit,
         Self::Files,
         Self::Panels,
@@ -59,6 +62,7 @@ impl Group {
             Self::Hands => "Hands",
             Self::Marks => "Marks and the cross",
             Self::View => "View",
+            Self::Exact => "Exact work",
             Self::Edit => "Edit",
             Self::Files => "Files",
             Self::Panels => "Modes and panels",
@@ -142,6 +146,7 @@ controls! {
     }
     View in View {
         Orbit = "orbit" "Orbit (drag)",
+        Look = "look" "Look around (drag)",
         Pan = "pan" "Pan (drag)",
         #[actionlike(DualAxis)]
         ViewStick = "view_stick" "Stick of the view",
@@ -156,9 +161,29 @@ controls! {
         FlyFast = "fly_fast" "Fly faster (hold)",
         FrameSelection = "frame_selection" "Show what is selected, or everything",
         FrameAll = "frame_all" "Show everything",
+        ResetView = "reset_view" "The view as at the start",
+        ViewFront = "view_front" "View from the front",
+        ViewRight = "view_right" "View from the right",
+        ViewTop = "view_top" "View from above",
+        ViewCorner = "view_corner" "View across the corner",
+        ResetWorld = "reset_world" "The world at its own size and place",
         Wireframe = "wireframe" "Wireframe on or off",
     }
+    Exact in View {
+        GizmoMove = "gizmo_move" "Handles to move by",
+        GizmoTurn = "gizmo_turn" "Handles to turn by",
+        GizmoScale = "gizmo_scale" "Handles to scale by",
+        SnapGrid = "snap_grid" "Snap to the grid, on or off",
+        SnapAngle = "snap_angle" "Snap to angles, on or off",
+        SnapSurface = "snap_surface" "Snap to surfaces, on or off",
+        Plane = "plane" "Work plane: show or hide",
+        PlaneFace = "plane_face" "Work plane onto the face under the pointer",
+        PlaneUp = "plane_up" "Work plane one step along its normal",
+        PlaneDown = "plane_down" "Work plane one step back",
+        Ruler = "ruler" "Ruler",
+    }
     Edit in View {
+        SelectMore = "select_more" "Add to what is selected (hold)",
         Undo = "undo" "Undo",
         Redo = "redo" "Redo",
         SelectAll = "select_all" "Select everything",
@@ -246,6 +271,7 @@ impl Control {
                 | Self::FlyUp
                 | Self::FlyDown
                 | Self::FlyFast
+                | Self::SelectMore
         )
     }
 
@@ -254,11 +280,15 @@ impl Control {
         self == Self::Finish
     }
 
-    /// Whether both may have one key: the pointer acts on and grabs what it is over.
+    /// Whether both may have one key: the pointer acts on and grabs what it is over; one flies with the
+    /// button down that does not select.
     pub(super) fn shares_with(self, other: Self) -> bool {
         matches!(
             (self, other),
-            (Self::Act, Self::Grab) | (Self::Grab, Self::Act)
+            (Self::Act, Self::Grab)
+                | (Self::Grab, Self::Act)
+                | (Self::FlyFast, Self::SelectMore)
+                | (Self::SelectMore, Self::FlyFast)
         )
     }
 }

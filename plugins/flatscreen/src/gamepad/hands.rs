@@ -6,6 +6,7 @@ use midair_studio::{
     command::Command,
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
     pick::{self, Proxy},
+    plane::WorkPlane,
     project::{Project, Shelf},
     settings::Settings,
 };
@@ -32,6 +33,7 @@ type Scene<'w, 's> = (
     Query<'w, 's, &'static Proxy>,
     Res<'w, Project>,
     Res<'w, Shelf>,
+    Res<'w, WorkPlane>,
 );
 
 /// What is asked for, and where it goes.
@@ -47,7 +49,7 @@ pub(crate) fn hands(
     (controls, settings, focus, ring, time): Says,
     screen: Res<Screen>,
     camera: Single<(&Camera, &Transform, &Orbit)>,
-    (context, proxies, project, shelf): Scene,
+    (context, proxies, project, shelf, plane): Scene,
     mut pad: ResMut<Pad>,
     mut input: ResMut<HandsInput>,
     mut commands: MessageWriter<Command>,
@@ -118,7 +120,7 @@ pub(crate) fn hands(
             if !bounds.is_empty() {
                 let corners = (bounds.min, bounds.max);
                 pad.poses[side as usize] =
-                    Pose::at(place::free_spot(&project, corners, eye, towards));
+                    Pose::at(place::free_spot(&project, &plane, corners, eye, towards));
             }
         }
         commands.write(Command::Place { component, side });

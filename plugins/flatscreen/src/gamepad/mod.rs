@@ -12,7 +12,10 @@ mod lead;
 mod rumble;
 
 use bevy::prelude::*;
-use midair_studio::hands::{HOLD, Pose, Side};
+use midair_studio::{
+    hands::{HOLD, Pose, Side},
+    world::Similarity,
+};
 
 pub(crate) use camera::camera;
 pub(crate) use hands::hands;
@@ -81,6 +84,11 @@ impl Pad {
     /// Whether a hand holds on although no button is down.
     pub fn is_latched(&self, side: Side) -> bool {
         self.latched[side as usize]
+    }
+
+    /// The world was moved: the hands stay where they are in the room.
+    pub(crate) fn go_along(&mut self, by: &Similarity) {
+        self.poses = self.poses.map(|pose| by.pose(&pose));
     }
 
     /// Whether a hand holds something, or has let go in this frame.

@@ -1,0 +1,129 @@
+//! A box drawn with the pointer on empty ground selects what lies in it.
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContexts, egui};
+use midair_studio::{
+    command::Command,
+    document::ObjectId,
+    objects::{Ask, How},
+    project::Project,
+    ruler::selected_box,
+    show::Drafts,
+    tools::Tools,
+};
+
+use crate::bindings::{Control, Controls, Device};
+use crate::orbit::Orbit;
+use crate::panels::Screen;
+use crate::pointer::{Pointer, TREMBLE};
+
+/// The mode in which a drag on nothing means nothing else.
+const SELECTING: &str = "csg";
+
+/// A box in pixels of the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Band {
+    from: Vec2,
+    to: Vec2,
+    /// What lies in it joins what is selected.
+    more: bool,
+}
+
+impl Band {
+    pub fn new(from: Vec2, more: bool) -> Self {
+        Self {
+            from,
+            to: from,
+            more,
+        }
+    }
+
+    fn is_drawn(&self) -> bool {
+        self.from.distance(self.to) > TREMBLE
+    }
+
+    fn rect(&self) -> Rect {
+        Rect::from_corners(self.from, self.to)
+    }
+}
+
+/// The command that selects.
+pub(crate) fn select(ids: Vec<ObjectId>, how: How) -> Command {
+    Command::Objects(Ask::Select { ids, how })
+}
+
+pub(crate) fn drag(
+    controls: Res<Controls>,
+    tools: Res<Tools>,
+    windows: Query<&Window>,
+    camera: Single<(&Camera, &Transform), With<Orbit>>,
+    (project, drafts): (Res<Project>, Res<Drafts>),
+    mut pointer: ResMut<Pointer>,
+    mut commands: MessageWriter<Command>,
+) {
+    let Some(mut band) = pointer.band else {
+        return;
+    };
+    let selecting = tools.active().is_some_and(|t| t.id.as_str() == SELECTING);
+    if !selecting {
+        pointer.band = None;
+        return;
+    }
+    let cursor = windows.iter().find_map(Window::cursor_position);
+    if let Some(at) = cursor.filter(|at| at.is_finite()) {
+        band.to = at;
+    }
+    if controls.pressed_on(Control::Act, Device::Keys) {
+        pointer.band = Some(band);
+        return;
+    }
+    pointer.band = None;
+    if !band.is_drawn() {
+        return;
+    }
+    let (camera, eye) = camera.into_inner();
+    let eye = GlobalTransform::from(*eye);
+    let document = project.document();
+    // What has its middle in the box lies in it.
+    let within = |id: ObjectId| {
+        let only = midair_studio::project::Selection(vec![id]);
+        selected_box(&project, &only, &drafts)
+            .and_then(|(low, high)| camera.world_to_viewport(&eye, low.midpoint(high)).ok())
+            .is_some_and(|at| band.rect().contains(at))
+    };
+    let ids: Vec<_> = document
+        .objects()
+        .map(|(id, _)| id)
+        .filter(|&id| document.is_visible(id) && !document.is_locked(id) && within(id))
+        .collect();
+    let how = if band.more { How::Add } else { How::Set };
+    commands.write(select(ids, how));
+}
+
+pub(crate) fn show(
+    mut contexts: EguiContexts,
+    screen: Res<Screen>,
+    pointer: Res<Pointer>,
+) -> Result {
+    let ctx = contexts.ctx_mut()?;
+    let (Some(view), Some(band)) = (screen.view(), pointer.band.filter(Band::is_drawn)) else {
+        return Ok(());
+    };
+    let rect = band.rect();
+    let rect = egui::Rect::from_min_max(
+        egui::pos2(rect.min.x, rect.min.y),
+        egui::pos2(rect.max.x, rect.max.y),
+    );
+    let painter = ctx
+        .layer_painter(egui::LayerId::background())
+        .with_clip_rect(view);
+    let line = ctx.global_style().visuals.selection.stroke.color;
+    painter.rect_filled(rect, 2.0, line.gamma_multiply(0.12));
+    painter.rect_stroke(
+        rect,
+        2.0,
+        egui::Stroke::new(1.0, line),
+        egui::StrokeKind::Inside,
+    );
+    Ok(())
+}
