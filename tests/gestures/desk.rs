@@ -11,7 +11,7 @@ use bevy::input::keyboard::{Key, KeyboardInput, NativeKey};
 use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
-use bevy::window::PrimaryWindow;
+use bevy::window::{PrimaryWindow, WindowResized};
 use midair::{Stage, app};
 use midair_document::{Document, ObjectId};
 use midair_flatscreen::focus::Focus;
@@ -278,6 +278,34 @@ impl Desk {
             window,
             position: to,
             delta: before.map(|b| to - b),
+        });
+    }
+
+    /// The pointer is nowhere, or at no place that is one.
+    pub fn leave(&mut self, to: Option<Vec2>) {
+        let window = self.window;
+        let world = self.app.world_mut();
+        let mut shown = world.get_mut::<Window>(window).unwrap();
+        shown.set_cursor_position(to);
+        if let Some(position) = to {
+            world.write_message(CursorMoved {
+                window,
+                position,
+                delta: Some(position),
+            });
+        }
+    }
+
+    /// The window has another size.
+    pub fn resize(&mut self, width: f32, height: f32) {
+        let window = self.window;
+        let world = self.app.world_mut();
+        let mut shown = world.get_mut::<Window>(window).unwrap();
+        shown.resolution.set(width, height);
+        world.write_message(WindowResized {
+            window,
+            width,
+            height,
         });
     }
 

@@ -7,6 +7,8 @@ mod gamepad;
 mod holding;
 mod keyboard;
 mod leaving;
+mod mouse;
+mod mouse_session;
 mod objects;
 mod operands;
 mod oracle;

@@ -340,7 +340,8 @@ pub(crate) fn grab(
     for side in Side::BOTH {
         if let Phase::Holding { object, hold } = draft.phase(side) {
             let wanted = hold.placement(&hands.get(side).pose);
-            drafts.set(object, snapper.place(object, &[], wanted, &hands, side));
+            let along = companions(document, &selection.0, object);
+            drafts.set(object, snapper.place(object, &along, wanted, &hands, side));
         }
     }
     // A group, and what is selected together, moves as one.

@@ -106,7 +106,7 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
                     // The hands go on with it; the panel stays for the next one.
                     world.resource_mut::<Focus>().leave();
                 } else {
-                    world.resource_mut::<Pointer>().picked.push(component);
+                    world.resource_mut::<Pointer>().pick(component);
                 }
             }
             other => {

@@ -48,7 +48,7 @@ pub struct Pointer {
     /// Enter ended something and is not to finish as well until it is up again.
     pub(crate) enter_spent: bool,
     /// Components that were picked and not placed yet.
-    pub(crate) picked: Vec<String>,
+    picked: Vec<String>,
 }
 
 /// What the leading hand drags.
@@ -94,6 +94,11 @@ impl Pointer {
     /// Whether the pointer is over a thing and not over a panel.
     pub fn is_over(&self) -> bool {
         self.over
+    }
+
+    /// A component was picked from the library: it goes where one looks.
+    pub fn pick(&mut self, component: String) {
+        self.picked.push(component);
     }
 
     /// Where a hand is.
