@@ -1,12 +1,14 @@
 //! What a session made, for `--report`.
 
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use bevy::prelude::*;
+use midair_csg::Preview;
 use midair_document::{Kind, Object};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{TriMesh, check};
-use midair_playback::{ObjectReport, Report, UpdateReport};
+use midair_playback::{FrameTimes, ObjectReport, Report, UpdateReport};
 use midair_solid::Solid;
 use midair_studio::evaluate::Evaluations;
 use midair_studio::project::Project;
@@ -50,8 +52,14 @@ pub fn probe(world: &mut World) -> Report {
                 triangles: u.triangles,
             })
             .collect(),
+        preview_ms: milliseconds(world.resource::<Preview>().took()),
+        preview_apart_ms: milliseconds(world.resource::<Preview>().apart()),
         ..Report::default()
     }
+}
+
+fn milliseconds(all: impl Iterator<Item = Duration>) -> FrameTimes {
+    FrameTimes::of(all.map(|d| d.as_secs_f32() * 1e3).collect())
 }
 
 /// The surface in world size, at the document's step.

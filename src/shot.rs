@@ -10,7 +10,8 @@ use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::renderer::RenderDevice;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use midair_studio::evaluate::Evaluations;
+use midair_csg::Preview;
+use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::project::Project;
 
 /// How long a picture may take: a software renderer compiles its shaders first.
@@ -46,9 +47,14 @@ pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
         Msaa::Sample4,
         view,
     ));
-    // Shadows and pipelines settle in the first frames.
-    for _ in 0..8 {
+    // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
+    app.insert_resource(Delivery::AsTheyCome);
+    let began = Instant::now();
+    let mut frames = 0;
+    while frames < 8 || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
+    {
         app.update();
+        frames += 1;
     }
     app.init_resource::<Taken>();
     app.world_mut().spawn(Screenshot::image(target)).observe(

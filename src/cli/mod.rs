@@ -76,6 +76,10 @@ pub struct Play {
     /// Refuse everything that hands could not do: document-level edits, any hand faster than 2 m/s
     #[arg(long)]
     hands_only: bool,
+    /// Play at the pace of life: 90 frames a second, none waits for background work, live previews are made. What
+    /// comes of it then depends on the machine
+    #[arg(long)]
+    paced: bool,
     /// Start from this document instead of an empty one
     #[arg(long, value_name = "FILE")]
     open: Option<PathBuf>,

@@ -35,6 +35,8 @@ pub(super) fn run(args: Play) -> Result<()> {
     }
     let options = PlayOptions {
         hands_only: args.hands_only,
+        paced: args.paced,
+        parts: args.report.is_some(),
         probe,
         ..PlayOptions::default()
     };

@@ -12,6 +12,7 @@ mod objects;
 mod operands;
 mod oracle;
 mod pad_session;
+mod preview;
 mod shapes;
 mod studio;
 mod training;

@@ -14,6 +14,7 @@ use crate::{
     act,
     fuse::Pending,
     phase::{Draft, Phase},
+    preview::Preview,
 };
 
 pub(crate) fn colours(
@@ -21,6 +22,7 @@ pub(crate) fn colours(
     touch: Res<Touch>,
     selection: Res<Selection>,
     draft: Res<Draft>,
+    preview: Res<Preview>,
     mut cues: ResMut<Cues>,
 ) {
     let document = project.document();
@@ -39,6 +41,7 @@ pub(crate) fn colours(
         };
         let cue = next.entry(id);
         cue.tint = tint;
+        cue.ghost = preview.is_shown();
         cue.label = tint.sign().map(|s| format!("{} {s}", i + 1));
     }
     for side in Side::BOTH {

@@ -35,6 +35,11 @@ impl Pending {
 /// The solid that the marked sequence makes, and where it stands: in the frame of the first
 /// operand's position, so that moving the others leaves its lattice where it is.
 pub fn fused_recipe(document: &Document) -> Option<(Recipe, Vec3)> {
+    drafted_recipe(document, &Drafts::default())
+}
+
+/// The same while hands move operands, in the frame of where the first one stood.
+pub(crate) fn drafted_recipe(document: &Document, drafts: &Drafts) -> Option<(Recipe, Vec3)> {
     let pending = document.pending();
     if pending.len() < 2 {
         return None;
@@ -45,9 +50,10 @@ pub fn fused_recipe(document: &Document) -> Option<(Recipe, Vec3)> {
         .enumerate()
         .map(|(i, &(id, op))| {
             let object = document.object(id)?;
+            let standing = drafts.get(id).unwrap_or(&object.placement);
             let placement = Placement {
-                translation: object.placement.translation - origin,
-                ..object.placement
+                translation: standing.translation - origin,
+                ..*standing
             };
             Some(Operand {
                 // The first one is what the others join.

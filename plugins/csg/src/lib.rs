@@ -10,16 +10,19 @@ mod cue;
 mod fuse;
 mod hold;
 mod phase;
+mod preview;
 
 use bevy::prelude::*;
 use midair_studio::{
     StudioSet,
+    evaluate::Deliver,
     tools::{AddTool, Tool, ToolChanged, ToolId, tool_active},
 };
 
 pub use fuse::{Pending, fused_recipe};
 pub use hold::{Axis, Hold, RATIO, Stretch};
 pub use phase::{Draft, Options, Phase};
+pub use preview::Preview;
 
 /// The tool's name in files.
 pub const ASSEMBLE: ToolId = ToolId::new("csg");
@@ -37,6 +40,7 @@ impl Plugin for AssemblePlugin {
         })
         .init_resource::<Draft>()
         .init_resource::<Options>()
+        .init_resource::<Preview>()
         .add_observer(abort)
         .add_systems(
             Update,
@@ -55,7 +59,11 @@ impl Plugin for AssemblePlugin {
                     .chain()
                     .in_set(StudioSet::Act),
                 act::release.in_set(StudioSet::Commit),
-                fuse::anticipate.in_set(StudioSet::Rebuild),
+                // What is made ahead is asked for first; then the preview finds it at rest.
+                (fuse::anticipate, preview::follow)
+                    .chain()
+                    .in_set(StudioSet::Rebuild)
+                    .after(Deliver),
                 (cue::colours, cue::hints).in_set(StudioSet::Cue),
             )
                 .run_if(tool_active(ASSEMBLE)),
@@ -68,7 +76,10 @@ fn abort(
     _: On<ToolChanged>,
     mut draft: ResMut<Draft>,
     mut drafts: ResMut<midair_studio::show::Drafts>,
+    mut preview: ResMut<Preview>,
+    mut commands: Commands,
 ) {
     *draft = Draft::default();
     drafts.clear();
+    preview.clear(&mut commands);
 }

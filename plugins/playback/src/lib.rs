@@ -16,6 +16,7 @@ mod frames;
 mod hands_only;
 mod motion;
 mod parse;
+mod parts;
 mod player;
 mod record;
 mod recording;

@@ -12,7 +12,9 @@ use midair_studio::{
     notice::Notices,
 };
 
-use crate::{Arrivals, Beat, Cursor, FrameBeat, OffFrame, PlayError, Report, Session, SpeedGate};
+use crate::{
+    Arrivals, Beat, Cursor, FrameBeat, OffFrame, PlayError, PlayOptions, Report, Session, SpeedGate,
+};
 
 /// Frames that may pass, hands still, until background work has settled.
 const MAX_SETTLING: u32 = 2_000;
@@ -33,29 +35,26 @@ pub struct Player {
     current: Option<FrameBeat>,
     gate: Option<SpeedGate>,
     patience: Duration,
+    paced: bool,
     probe: fn(&mut World) -> Report,
     frames: u64,
     time: Duration,
 }
 
 impl Player {
-    /// Plays `session` from its start. `probe` tells what there is, for [`crate::Step::Expect`].
-    /// Where `hands_only`, a hand faster than [`crate::MAX_SPEED`] ends it.
-    pub fn new(
-        session: Arc<Session>,
-        hands_only: bool,
-        patience: Duration,
-        probe: fn(&mut World) -> Report,
-    ) -> Self {
+    /// Plays `session` from its start. The options' `probe` tells what there is, for
+    /// [`crate::Step::Expect`]; where `hands_only`, a hand faster than [`crate::MAX_SPEED`] ends it.
+    pub fn new(session: Arc<Session>, options: &PlayOptions) -> Self {
         Self {
             cursor: session.cursor(),
             session,
             held: None,
             settling: 0,
             current: None,
-            gate: hands_only.then(SpeedGate::default),
-            patience,
-            probe,
+            gate: options.hands_only.then(SpeedGate::default),
+            patience: options.patience,
+            paced: options.paced,
+            probe: options.probe,
             frames: 0,
             time: Duration::ZERO,
         }
@@ -150,7 +149,14 @@ impl Player {
                 self.held = Some(held);
                 self.current = None;
                 self.set_time(world, self.session.dt());
-                work.deliver(world, Delivery::All);
+                work.deliver(
+                    world,
+                    if self.paced {
+                        Delivery::AsTheyCome
+                    } else {
+                        Delivery::All
+                    },
+                );
                 return Ok(Next::Frame);
             }
             self.settling = 0;
@@ -176,7 +182,9 @@ impl Player {
         if let Some(gate) = &mut self.gate {
             gate.check(beat.dt, &beat.input, || session.place(beat.step))?;
         }
-        if session.is_recorded() {
+        if self.paced {
+            work.deliver(world, Delivery::AsTheyCome);
+        } else if session.is_recorded() {
             for &job in &beat.ready {
                 self.wait(world, work, |world| {
                     work.is_waiting(world, job) || work.unfinished(world) == 0

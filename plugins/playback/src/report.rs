@@ -1,4 +1,9 @@
+use std::collections::BTreeMap;
+
 use serde::Serialize;
+
+/// A frame of a headset at 90 Hz has so many milliseconds.
+const FRAME_MS: f32 = 11.0;
 
 /// What came of a session: the JSON of `--report`. Fields may be added, none renamed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -27,6 +32,14 @@ pub struct Report {
     pub seconds: f64,
     /// How long a frame's work took; waiting for background work is not in it.
     pub frame_ms: FrameTimes,
+    /// Where that time went, part by part of a frame; empty unless it was asked for.
+    pub parts_ms: BTreeMap<String, FrameTimes>,
+    /// Seconds of processor time that the whole process took while it was played; none where the system does not say.
+    pub cpu_seconds: Option<f64>,
+    /// How long each preview took to make.
+    pub preview_ms: FrameTimes,
+    /// How far apart previews came while a hand moved an operand.
+    pub preview_apart_ms: FrameTimes,
     /// Everything that could not be done, one line each.
     pub warnings: Vec<String>,
 }
@@ -82,6 +95,8 @@ pub struct UpdateReport {
 /// Milliseconds of a frame's work over a whole session; zero where no frame was played.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FrameTimes {
+    /// How many there are.
+    pub count: usize,
     /// The fastest.
     pub min: f64,
     /// Half of them are faster.
@@ -92,6 +107,8 @@ pub struct FrameTimes {
     pub p999: f64,
     /// The slowest.
     pub max: f64,
+    /// The share, from 0 to 1, of those that took longer than 11 ms.
+    pub over_11_ms: f64,
 }
 
 impl FrameTimes {
@@ -104,7 +121,10 @@ impl FrameTimes {
                 .copied()
                 .map_or(0.0, f64::from)
         };
+        let over = ms.iter().filter(|&&t| t > FRAME_MS).count();
         Self {
+            count: ms.len(),
+            over_11_ms: over as f64 / ms.len().max(1) as f64,
             min: at(0.0),
             median: at(0.5),
             p99: at(0.99),
@@ -125,6 +145,7 @@ mod tests {
             (t.min, t.median, t.p99, t.p999, t.max),
             (1.0, 500.0, 990.0, 999.0, 1000.0)
         );
+        assert_eq!((t.count, t.over_11_ms), (1000, 0.989));
         assert_eq!(FrameTimes::of(Vec::new()), FrameTimes::default());
     }
 }

@@ -6,6 +6,7 @@ use std::{
 use bevy::{app::PluginsState, prelude::*};
 use midair_studio::notice::Notices;
 
+use crate::parts::{Parts, PartsPlugin, cpu_seconds};
 use crate::{
     FrameTimes, HandsOnlyFault, Next, Place, Player, Report, Session, check_hands_only, prepare,
 };
@@ -17,6 +18,11 @@ pub struct PlayOptions {
     pub hands_only: bool,
     /// How long background work may keep one frame waiting.
     pub patience: Duration,
+    /// Whether frames come as in life: at the session's own pace, and none waits for background work.
+    /// What came of it then depends on the machine.
+    pub paced: bool,
+    /// Whether the report tells where a frame's time went.
+    pub parts: bool,
     /// Tells what there is: objects, lines, strokes, edits, undo, redo, updates. The rest of the
     /// report is filled in here.
     pub probe: fn(&mut World) -> Report,
@@ -27,6 +33,8 @@ impl Default for PlayOptions {
         Self {
             hands_only: false,
             patience: Duration::from_secs(120),
+            paced: false,
+            parts: false,
             probe: |_| Report::default(),
         }
     }
@@ -91,15 +99,15 @@ pub fn play(app: &mut App, session: Session, options: PlayOptions) -> Result<Rep
     if options.hands_only {
         check_hands_only(&session)?;
     }
+    if options.parts {
+        app.add_plugins(PartsPlugin);
+    }
     ready(app);
-    app.insert_resource(Player::new(
-        session.clone(),
-        options.hands_only,
-        options.patience,
-        options.probe,
-    ));
+    app.insert_resource(Player::new(session.clone(), &options));
     let mut frame_ms = Vec::new();
-    let outcome = drive(app, &session, &mut frame_ms);
+    let before = cpu_seconds();
+    let outcome = drive(app, &session, options.paced, &mut frame_ms);
+    let cpu = cpu_seconds().zip(before).map(|(now, then)| now - then);
     let player = app.world_mut().remove_resource::<Player>();
     outcome?;
     let mut report = (options.probe)(app.world_mut());
@@ -108,6 +116,10 @@ pub fn play(app: &mut App, session: Session, options: PlayOptions) -> Result<Rep
     report.seconds = player.map_or(0.0, |p| p.time().as_secs_f64());
     report.steps = session.steps().len();
     report.frame_ms = FrameTimes::of(frame_ms);
+    report.cpu_seconds = cpu;
+    if let Some(parts) = app.world_mut().remove_resource::<Parts>() {
+        report.parts_ms = parts.figures();
+    }
     report.warnings = app
         .world()
         .get_resource::<Notices>()
@@ -121,7 +133,12 @@ pub fn play(app: &mut App, session: Session, options: PlayOptions) -> Result<Rep
     Ok(report)
 }
 
-fn drive(app: &mut App, session: &Session, frame_ms: &mut Vec<f32>) -> Result<(), PlayError> {
+fn drive(
+    app: &mut App,
+    session: &Session,
+    paced: bool,
+    frame_ms: &mut Vec<f32>,
+) -> Result<(), PlayError> {
     let mut step = 0;
     while prepare(app.world_mut())? == Next::Frame {
         let played = app
@@ -129,11 +146,18 @@ fn drive(app: &mut App, session: &Session, frame_ms: &mut Vec<f32>) -> Result<()
             .get_resource::<Player>()
             .and_then(Player::current);
         let counts = played.is_some();
+        let lasts = played.map_or_else(|| session.dt(), |b| b.dt);
         step = played.map_or(step, |b| b.step);
+        if let Some(mut parts) = app.world_mut().get_resource_mut::<Parts>() {
+            parts.count(counts);
+        }
         let since = Instant::now();
         app.update();
         if counts {
             frame_ms.push(since.elapsed().as_secs_f32() * 1e3);
+        }
+        if paced {
+            std::thread::sleep(lasts.saturating_sub(since.elapsed()));
         }
         if app.should_exit().is_some() {
             return Err(PlayError::Exited {

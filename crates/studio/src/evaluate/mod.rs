@@ -6,6 +6,7 @@
 
 mod delivery;
 mod job;
+mod live;
 mod memory;
 
 use std::sync::Arc;
@@ -20,6 +21,7 @@ use midair_library::Volumes;
 pub use delivery::{Deliver, Delivered, Delivery, Job};
 pub use job::Made;
 use job::Running;
+pub use live::{Live, Sketch};
 use memory::Memory;
 
 use crate::{StudioSet, notice::Notices};

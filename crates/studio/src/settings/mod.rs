@@ -9,6 +9,7 @@ mod hands;
 mod keep;
 mod look;
 mod patch;
+mod preview;
 mod snap;
 mod units;
 mod world;
@@ -21,6 +22,7 @@ pub use hands::HandsSettings;
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
+pub use preview::PreviewSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
 pub use units::UnitSettings;
 pub use world::WorldSettings;
@@ -37,6 +39,8 @@ pub struct Settings {
     pub units: UnitSettings,
     /// What is remembered of files.
     pub files: FileSettings,
+    /// Whether results are shown ahead.
+    pub preview: PreviewSettings,
     /// What pulls at things that hands move.
     pub snap: SnapSettings,
     /// How two hands move the world.

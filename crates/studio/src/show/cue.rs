@@ -52,6 +52,8 @@ pub struct Cue {
     pub touched: bool,
     /// It is selected.
     pub selected: bool,
+    /// Only its shell is seen: what it becomes is shown in its place.
+    pub ghost: bool,
     /// A short label beside it: an operand's sign and its place in the sequence.
     pub label: Option<String>,
 }

@@ -48,7 +48,20 @@ struct StandIn;
 
 /// Bevy meshes by what they were made from, so that copies share one.
 #[derive(Resource, Default)]
-struct Drawn(HashMap<Key, Handle<Mesh>>);
+pub struct Drawn(HashMap<Key, Handle<Mesh>>);
+
+impl Drawn {
+    /// What draws a solid; the first time it is taken over from where it was made.
+    pub fn handle(&mut self, key: Key, made: &Made, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
+        let known = self.0.get(&key).filter(|h| meshes.contains(h.id()));
+        known.cloned().unwrap_or_else(|| {
+            let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
+            let handle = meshes.add(mesh.unwrap_or_else(|| to_bevy_mesh(&made.mesh)));
+            self.0.insert(key, handle.clone());
+            handle
+        })
+    }
+}
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<ObjectMap>()
@@ -153,13 +166,7 @@ fn show(
                     continue;
                 };
                 showing.solid = Some(key);
-                let known = drawn.0.get(&key).filter(|h| meshes.contains(h.id()));
-                let handle = known.cloned().unwrap_or_else(|| {
-                    let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
-                    let handle = meshes.add(mesh.unwrap_or_else(|| to_bevy_mesh(&made.mesh)));
-                    drawn.0.insert(key, handle.clone());
-                    handle
-                });
+                let handle = drawn.handle(key, &made, &mut meshes);
                 commands.entity(entity).insert(Mesh3d(handle));
                 made
             }

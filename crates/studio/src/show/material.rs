@@ -68,6 +68,7 @@ struct Look {
     tint: Tint,
     touched: bool,
     selected: bool,
+    ghost: bool,
     own: Option<[u8; 3]>,
     /// Which of [`MATERIALS`].
     material: usize,
@@ -82,6 +83,7 @@ impl Look {
             tint: cue.tint,
             touched: cue.touched,
             selected: cue.selected,
+            ghost: cue.ghost,
             own: object.colour.map(|c| c.0),
             // A material of a plugin that is missing is shown as matte, and kept.
             material: MATERIALS.iter().position(named).unwrap_or(0),
@@ -96,18 +98,25 @@ impl Look {
             (tint, _) => tint.colour(),
         };
         let info = MATERIALS[self.material];
+        let alpha = match (self.ghost, self.touched || self.selected) {
+            (true, true) => 0.42,
+            (true, false) => 0.2,
+            (false, _) => 1.0 - info.clear,
+        };
         let glow = match (self.touched, self.selected) {
             (true, _) => 0.16,
             (false, true) => 0.07,
             (false, false) => 0.0,
         };
         StandardMaterial {
-            base_color: base.with_alpha(1.0 - info.clear),
+            base_color: base.with_alpha(alpha),
             emissive: base.to_linear() * glow,
             perceptual_roughness: info.roughness,
             metallic: info.metallic,
             reflectance: 0.35,
-            alpha_mode: if info.clear > 0.0 {
+            // A shell that coincides with the result lies on it like a skin.
+            depth_bias: if self.ghost { 32.0 } else { 0.0 },
+            alpha_mode: if alpha < 1.0 {
                 AlphaMode::Blend
             } else {
                 AlphaMode::Opaque

@@ -15,7 +15,7 @@ use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
 pub(crate) use follow::display_steps;
-pub use follow::{ObjectEntity, ObjectMap, to_bevy_mesh};
+pub use follow::{Drawn, ObjectEntity, ObjectMap, to_bevy_mesh};
 pub use material::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
 pub use room::{Room, RoomPlugin, is_software};

@@ -1,0 +1,159 @@
+//! What the marked operands will come to, shown before it is made: coarse while a hand moves one of
+//! them, as fine as the result at rest.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use midair_studio::{
+    evaluate::{Delivery, Evaluations, Key, Live},
+    project::Project,
+    settings::Settings,
+    show::{Drafts, Drawn, Tint},
+};
+
+use crate::fuse::drafted_recipe;
+
+/// Figures are kept of so many pictures.
+const KEPT: usize = 4096;
+
+/// The preview of the marked sequence.
+#[derive(Resource, Default)]
+pub struct Preview {
+    live: Live,
+    entity: Option<Entity>,
+    /// Where the frame of what is asked for stands.
+    origin: Option<Vec3>,
+    shown: Option<Key>,
+    material: Option<Handle<StandardMaterial>>,
+    /// When the last picture came while a hand was moving an operand.
+    before: Option<Instant>,
+    took: VecDeque<Duration>,
+    apart: VecDeque<Duration>,
+}
+
+impl Preview {
+    /// Whether it can be seen.
+    pub fn is_shown(&self) -> bool {
+        self.entity.is_some()
+    }
+
+    /// What can be seen: of which recipe, at which step.
+    pub fn shown(&self) -> Option<Key> {
+        self.shown
+    }
+
+    /// Whether one is on its way.
+    pub fn is_busy(&self) -> bool {
+        self.live.is_busy()
+    }
+
+    /// How long the latest pictures took to make.
+    pub fn took(&self) -> impl Iterator<Item = Duration> + '_ {
+        self.took.iter().copied()
+    }
+
+    /// How far apart they came while a hand moved an operand.
+    pub fn apart(&self) -> impl Iterator<Item = Duration> + '_ {
+        self.apart.iter().copied()
+    }
+
+    pub(crate) fn clear(&mut self, commands: &mut Commands) {
+        self.live.clear();
+        self.origin = None;
+        self.shown = None;
+        self.before = None;
+        if let Some(entity) = self.entity.take() {
+            commands.entity(entity).try_despawn();
+        }
+    }
+
+    fn note(&mut self, took: Duration, moving: bool) {
+        let now = Instant::now();
+        push(&mut self.took, took);
+        if let Some(before) = self.before.replace(now).filter(|_| moving) {
+            push(&mut self.apart, now - before);
+        }
+    }
+
+    fn show(
+        &mut self,
+        key: Key,
+        mesh: Handle<Mesh>,
+        origin: Vec3,
+        materials: &mut Assets<StandardMaterial>,
+        commands: &mut Commands,
+    ) {
+        self.shown = Some(key);
+        let at = Transform::from_translation(origin);
+        if let Some(entity) = self.entity {
+            commands.entity(entity).try_insert((Mesh3d(mesh), at));
+            return;
+        }
+        let material = self.material.get_or_insert_with(|| {
+            materials.add(StandardMaterial {
+                base_color: Tint::Plain.colour(),
+                perceptual_roughness: 0.62,
+                reflectance: 0.35,
+                ..default()
+            })
+        });
+        let look = MeshMaterial3d(material.clone());
+        let name = Name::new("Preview");
+        self.entity = Some(commands.spawn((name, Mesh3d(mesh), look, at)).id());
+    }
+}
+
+fn push(kept: &mut VecDeque<Duration>, one: Duration) {
+    if kept.len() == KEPT {
+        kept.pop_front();
+    }
+    kept.push_back(one);
+}
+
+/// Shows what the marks come to. Nothing that a session makes depends on it, so a session that is
+/// played without a pace of its own, where nobody looks, goes without.
+pub(crate) fn follow(
+    (project, drafts): (Res<Project>, Res<Drafts>),
+    (settings, delivery): (Res<Settings>, Res<Delivery>),
+    mut evaluations: ResMut<Evaluations>,
+    mut preview: ResMut<Preview>,
+    mut drawn: ResMut<Drawn>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut commands: Commands,
+) {
+    let document = project.document();
+    let wanted = settings.preview.on && *delivery == Delivery::AsTheyCome;
+    let sequence = wanted.then(|| drafted_recipe(document, &drafts)).flatten();
+    let Some((recipe, origin)) = sequence else {
+        if preview.is_shown() || preview.is_busy() {
+            preview.clear(&mut commands);
+        }
+        return;
+    };
+    let moving = !drafts.is_empty();
+    let fine = Key::new(&recipe, document.step());
+    if !moving {
+        preview.before = None;
+        if preview.shown == Some(fine) {
+            return;
+        }
+        // It is being made ahead for update: the same solid, at the same step.
+        if let Some(made) = evaluations.peek(&fine) {
+            let mesh = drawn.handle(fine, &made, &mut meshes);
+            preview.show(fine, mesh, origin, &mut materials, &mut commands);
+            return;
+        }
+    }
+    // What was asked for in another frame would be shown in the wrong place.
+    if preview.origin.replace(origin).is_some_and(|o| o != origin) {
+        preview.live.clear();
+    }
+    let volumes = evaluations.volumes.clone();
+    if let Some(sketch) = preview.live.ask(&recipe, document.step(), &volumes) {
+        preview.note(sketch.took, moving);
+        let mesh = meshes.add(sketch.mesh);
+        preview.show(sketch.key, mesh, origin, &mut materials, &mut commands);
+    }
+}
