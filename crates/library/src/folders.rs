@@ -85,6 +85,11 @@ impl Folders {
         self.config.clone()
     }
 
+    /// Pictures of components; may be deleted at any time.
+    pub fn thumbnails(&self) -> PathBuf {
+        self.cache.join("thumbnails")
+    }
+
     /// Baked distance grids; may be deleted at any time.
     pub fn bakes(&self) -> PathBuf {
         self.cache.join("bakes")

@@ -27,8 +27,10 @@ use midair_mesh::TriMesh;
 use midair_surface::{Cancelled, Surface};
 
 mod export;
+mod thumbnail;
 
 pub use export::{ExportError, ExportOptions, export};
+pub use thumbnail::Thumbnail;
 
 /// Why a recipe did not become a solid.
 #[derive(Debug, thiserror::Error)]

@@ -84,6 +84,11 @@ fn handle(
             }
             Command::Place { component, side } => {
                 if let Some(object) = placed(component, *side, &shelf, &hands, &mut notices) {
+                    let mut next = settings.shelf.clone();
+                    next.note(component);
+                    if next != settings.shelf {
+                        settings.shelf = next;
+                    }
                     errands.place(object, &mut project, &places, &mut notices);
                 }
             }

@@ -1,93 +1,358 @@
-use bevy_egui::egui::{self, Ui};
+//! The library: pictures by category, searched as one types.
 
-use crate::command::Command;
+use std::collections::HashMap;
+
+use bevy::prelude::World;
+use bevy_egui::egui::{
+    self, Align2, Color32, ColorImage, FontId, Rect, Response, RichText, Sense, TextureHandle,
+    TextureOptions, Ui, Vec2, vec2,
+};
+use midair_field::RecipeHash;
+use midair_library::{Component, OWN};
+
+use super::{ACCENT, Panel, icon};
+use crate::command::{Command, Dialog};
+use crate::evaluate::Evaluations;
 use crate::hands::Side;
-use crate::project::Shelf;
+use crate::project::{Picture, Places, Shelf, Thumbnails};
+use crate::settings::Settings;
+use crate::units;
 
-/// A column of the shelf is at least this wide, in points.
-const COLUMN: f32 = 112.0;
+/// The basic shapes: what one looks for first stands first.
+const BASIC: [&str; 8] = [
+    "solid/cube",
+    "solid/sphere",
+    "solid/cylinder",
+    "solid/cone",
+    "solid/torus",
+    "solid/capsule",
+    "solid/cuboid",
+    "solid/pyramid",
+];
 
 /// The shelf as a panel.
 #[derive(Default)]
 pub(super) struct LibraryPanel {
     /// What is typed into the search field.
     query: String,
+    /// Which category is shown.
+    category: Category,
+    textures: HashMap<RecipeHash, TextureHandle>,
 }
 
-impl super::Panel for LibraryPanel {
-    fn show(&mut self, ui: &mut Ui, world: &bevy::prelude::World, asks: &mut Vec<Command>) {
-        // At which hand is the way in's to say.
+#[derive(Clone, Debug, Default, PartialEq)]
+enum Category {
+    /// Recent and favourite ones, the basic shapes, then everything.
+    #[default]
+    All,
+    Favourites,
+    Named(String),
+}
+
+impl Panel for LibraryPanel {
+    fn show(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         let shelf = world.resource::<Shelf>();
-        asks.extend(library(ui, shelf, &mut self.query, Side::Right));
+        let settings = world.resource::<Settings>();
+        ui.horizontal(|ui| {
+            let search = egui::TextEdit::singleline(&mut self.query)
+                .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))
+                .margin(egui::Margin::symmetric(8, 6))
+                .desired_width(ui.available_width() - 44.0);
+            ui.add(search);
+            let import = ui.button(icon::DOWNLOAD_SIMPLE);
+            if import
+                .on_hover_text("Bring in meshes of your own: GLB, OBJ, STL, PLY")
+                .clicked()
+            {
+                asks.push(Command::Dialog(Dialog::Import));
+            }
+        });
+        if self.query.trim().is_empty() {
+            self.categories(ui, shelf, settings);
+        }
+        let sections = self.sections(shelf, settings);
+        let tile = settings.shelf.tile.clamp(48.0, 160.0);
+        let waits = world.resource::<Thumbnails>().is_busy();
+        self.tiles(ui, world, &sections, tile, asks);
+        if waits {
+            // What is being drawn appears without the pointer having to move.
+            ui.ctx().request_repaint();
+        }
     }
 }
 
-/// The library: search, then every component by category. Picking one places it at `side`.
-///
-/// `query` is the search text, edited in place.
-pub fn library(ui: &mut Ui, shelf: &Shelf, query: &mut String, side: Side) -> Vec<Command> {
-    let mut asks = Vec::new();
-    let search = egui::TextEdit::singleline(query)
-        .hint_text("Search")
-        .margin(egui::Margin::symmetric(8, 6))
-        .desired_width(f32::INFINITY);
-    ui.add(search);
-    ui.add_space(4.0);
-    egui::ScrollArea::vertical()
-        .auto_shrink([false, false])
-        .show(ui, |ui| {
-            let mut shown = 0;
-            if query.trim().is_empty() {
-                for (category, components) in shelf.library.categories() {
-                    // What the user made is what is looked for.
-                    let open = shown == 0 || category == midair_library::OWN;
-                    egui::CollapsingHeader::new(egui::RichText::new(category).strong())
-                        .default_open(open)
-                        .show_unindented(ui, |ui| {
-                            buttons(ui, components.iter(), side, &mut asks);
-                        });
-                    shown += components.len();
-                }
-            } else {
-                let found = shelf.library.search(query);
-                shown = found.len();
-                buttons(ui, found.into_iter(), side, &mut asks);
-            }
-            if shown == 0 {
-                ui.label("Nothing is called that. Try a shape: cube, leg, handle, star.");
-            }
-            ui.add_space(8.0);
-        });
-    asks
+/// A heading and what stands under it.
+struct Section<'a> {
+    title: &'a str,
+    components: Vec<&'a Component>,
 }
 
-fn buttons<'a>(
-    ui: &mut Ui,
-    components: impl Iterator<Item = &'a midair_library::Component>,
-    side: Side,
-    asks: &mut Vec<Command>,
-) {
-    let gap = ui.spacing().item_spacing.x;
-    let room = ui.available_width() - 4.0;
-    let columns = ((room + gap) / (COLUMN + gap)).floor().max(1.0);
-    let width = (room + gap) / columns - gap;
-    let components: Vec<_> = components.collect();
-    for row in components.chunks(columns as usize) {
-        ui.horizontal(|ui| {
-            for component in row {
-                let button = egui::Button::new(&component.name)
-                    .truncate()
-                    .min_size([width, 30.0].into());
-                let sized = |ui: &mut Ui| ui.add_sized([width, 30.0], button);
-                let response = ui.add_enabled_ui(!component.missing, sized).inner;
-                if response.clicked() {
-                    asks.push(Command::Place {
-                        component: component.id.clone(),
-                        side,
+impl LibraryPanel {
+    fn categories(&mut self, ui: &mut Ui, shelf: &Shelf, settings: &Settings) {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            let mut choose = |ui: &mut Ui, text: String, category: Category| {
+                if ui
+                    .selectable_label(self.category == category, text)
+                    .clicked()
+                {
+                    self.category = category;
+                }
+            };
+            choose(ui, "All".into(), Category::All);
+            let stars = settings.shelf.favourites.len();
+            choose(ui, format!("{} {stars}", icon::STAR), Category::Favourites);
+            for (name, components) in shelf.library.categories() {
+                let text = format!("{name} {}", components.len());
+                choose(ui, text, Category::Named(name.to_owned()));
+            }
+        });
+    }
+
+    fn sections<'a>(&self, shelf: &'a Shelf, settings: &Settings) -> Vec<Section<'a>> {
+        let library = &shelf.library;
+        let named = |ids: &[String]| -> Vec<&'a Component> {
+            ids.iter().filter_map(|id| library.get(id)).collect()
+        };
+        if !self.query.trim().is_empty() {
+            return vec![Section {
+                title: "",
+                components: library.search(&self.query),
+            }];
+        }
+        match &self.category {
+            Category::Favourites => vec![Section {
+                title: "",
+                components: named(&settings.shelf.favourites),
+            }],
+            Category::Named(name) => {
+                let of = library.categories().find(|(c, _)| c == name);
+                vec![Section {
+                    title: "",
+                    components: of.map_or(Vec::new(), |(_, c)| basic_first(c)),
+                }]
+            }
+            Category::All => {
+                let mut sections = vec![
+                    Section {
+                        title: "Recent",
+                        components: named(&settings.shelf.recent),
+                    },
+                    Section {
+                        title: "Favourites",
+                        components: named(&settings.shelf.favourites),
+                    },
+                ];
+                let all: Vec<_> = library.categories().collect();
+                // What a person made is what is looked for.
+                let (own, bundled): (Vec<_>, Vec<_>) =
+                    all.into_iter().partition(|(c, _)| *c == OWN);
+                for (title, components) in own.into_iter().chain(bundled) {
+                    sections.push(Section {
+                        title,
+                        components: basic_first(components),
                     });
                 }
-                response.on_disabled_hover_text("Its mesh is gone. Import it again.");
+                sections.retain(|s| !s.components.is_empty());
+                sections
+            }
+        }
+    }
+
+    fn tiles(
+        &mut self,
+        ui: &mut Ui,
+        world: &World,
+        sections: &[Section],
+        tile: f32,
+        asks: &mut Vec<Command>,
+    ) {
+        if sections.iter().all(|s| s.components.is_empty()) {
+            ui.add_space(12.0);
+            ui.weak(match self.category {
+                Category::Favourites => "No favourites yet. Right-click a shape to give it a star.",
+                _ => "Nothing is called that. Try a shape: cube, leg, handle, star.",
+            });
+            return;
+        }
+        egui::ScrollArea::vertical()
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                let gap = 6.0;
+                let room = ui.available_width() - 4.0;
+                let columns = ((room + gap) / (tile + gap)).floor().max(1.0);
+                let side = ((room + gap) / columns - gap).min(2.0 * tile);
+                ui.spacing_mut().item_spacing = vec2(gap, gap);
+                for section in sections {
+                    if !section.title.is_empty() {
+                        ui.add_space(6.0);
+                        ui.label(RichText::new(section.title).strong());
+                    }
+                    for row in section.components.chunks(columns as usize) {
+                        let size = vec2(side, side + 18.0);
+                        // Rows out of sight take their place and are not drawn.
+                        let place = Rect::from_min_size(ui.cursor().min, vec2(room, size.y));
+                        if !ui.is_rect_visible(place) {
+                            ui.allocate_space(place.size());
+                            continue;
+                        }
+                        ui.horizontal(|ui| {
+                            for component in row {
+                                let response = self.tile(ui, world, component, size);
+                                self.act(response, world, component, asks);
+                            }
+                        });
+                    }
+                }
+            });
+    }
+
+    fn tile(&mut self, ui: &mut Ui, world: &World, component: &Component, size: Vec2) -> Response {
+        let sense = if component.missing {
+            Sense::hover()
+        } else {
+            Sense::click()
+        };
+        let (rect, response) = ui.allocate_exact_size(size, sense);
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(
+                egui::WidgetType::Button,
+                !component.missing,
+                &component.name,
+            )
+        });
+        let visuals = ui.style().interact(&response);
+        let painter = ui.painter();
+        painter.rect(
+            rect,
+            6.0,
+            visuals.weak_bg_fill,
+            if response.has_focus() {
+                egui::Stroke::new(2.0, ACCENT)
+            } else {
+                egui::Stroke::NONE
+            },
+            egui::StrokeKind::Inside,
+        );
+        let picture = Rect::from_min_size(rect.min, Vec2::splat(size.x)).shrink(4.0);
+        let text = ui.visuals().text_color();
+        if component.missing {
+            sign(ui, picture, icon::WARNING, text);
+        } else {
+            match self.texture(ui, world, component) {
+                Some(texture) => {
+                    let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                    painter.image(texture, picture, whole, Color32::WHITE);
+                }
+                None => sign(
+                    ui,
+                    picture,
+                    icon::CUBE_TRANSPARENT,
+                    text.gamma_multiply(0.4),
+                ),
+            }
+        }
+        let font = FontId::proportional(12.0);
+        let mut job = egui::text::LayoutJob::simple_singleline(component.name.clone(), font, text);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(size.x - 6.0);
+        let galley = ui.fonts_mut(|f| f.layout_job(job));
+        let at = rect.center_bottom() - vec2(0.5 * galley.size().x, 4.0 + galley.size().y);
+        painter.galley(at, galley, text);
+        let starred = world
+            .resource::<Settings>()
+            .shelf
+            .favourites
+            .contains(&component.id);
+        if starred {
+            let corner = rect.right_top() + vec2(-4.0, 4.0);
+            painter.text(
+                corner,
+                Align2::RIGHT_TOP,
+                icon::STAR,
+                FontId::proportional(12.0),
+                ACCENT,
+            );
+        }
+        response
+    }
+
+    /// The picture as the screen has it; asked for where it is not there yet.
+    fn texture(
+        &mut self,
+        ui: &Ui,
+        world: &World,
+        component: &Component,
+    ) -> Option<egui::TextureId> {
+        let hash = component.recipe.hash();
+        if let Some(texture) = self.textures.get(&hash) {
+            return Some(texture.id());
+        }
+        let volumes = &world.resource::<Evaluations>().volumes;
+        let cache = world.resource::<Places>().library.thumbnails();
+        let Picture::Here(picture) =
+            world
+                .resource::<Thumbnails>()
+                .get(&component.recipe, volumes, &cache)
+        else {
+            return None;
+        };
+        let image = ColorImage::from_rgba_unmultiplied([picture.size; 2], &picture.rgba);
+        let texture = ui
+            .ctx()
+            .load_texture(&component.id, image, TextureOptions::LINEAR);
+        Some(self.textures.entry(hash).or_insert(texture).id())
+    }
+
+    fn act(
+        &self,
+        response: Response,
+        world: &World,
+        component: &Component,
+        asks: &mut Vec<Command>,
+    ) {
+        if response.clicked() {
+            // At which hand is the way in's to say.
+            asks.push(Command::Place {
+                component: component.id.clone(),
+                side: Side::Right,
+            });
+        }
+        let settings = world.resource::<Settings>();
+        let response = if component.missing {
+            response.on_hover_text("Its mesh is gone. Import it again.")
+        } else {
+            let bounds = component.recipe.bounds();
+            let size = units::size(bounds.size(), settings.units.length);
+            response.on_hover_text(format!("{}\n{size}", component.name))
+        };
+        response.context_menu(|ui| {
+            let starred = settings.shelf.favourites.contains(&component.id);
+            let text = if starred {
+                "Take the star away"
+            } else {
+                "Give it a star"
+            };
+            if ui.button(format!("{}  {text}", icon::STAR)).clicked() {
+                asks.push(Settings::command(
+                    "shelf.favourites",
+                    settings.shelf.toggled(&component.id),
+                ));
+                ui.close();
             }
         });
     }
+}
+
+fn sign(ui: &Ui, at: Rect, sign: &str, colour: Color32) {
+    let font = FontId::proportional(0.4 * at.height());
+    ui.painter()
+        .text(at.center(), Align2::CENTER_CENTER, sign, font, colour);
+}
+
+/// The basic shapes in their order, then the rest in theirs.
+fn basic_first(components: &[Component]) -> Vec<&Component> {
+    let rank = |c: &&Component| BASIC.iter().position(|b| *b == c.id).unwrap_or(BASIC.len());
+    let mut sorted: Vec<_> = components.iter().collect();
+    sorted.sort_by_key(rank);
+    sorted
 }

@@ -23,7 +23,6 @@ pub use export::triangles;
 pub use files::Files;
 pub use hints::{KeyNames, hints};
 pub use keyboard::{Key, Keyboard, keyboard};
-pub use library::library;
 pub use notices::{STAYS, notices};
 pub use objects::operands;
 pub use registry::{AddPanel, Dock, Panel, PanelInfo, Panels};

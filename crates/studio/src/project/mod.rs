@@ -4,6 +4,7 @@ mod begin;
 mod keep;
 mod leave;
 mod shelf;
+mod thumbnails;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,6 +20,7 @@ pub use keep::KeepPlugin;
 pub(crate) use leave::PANEL as LEAVE_PANEL;
 pub use leave::{Answer, Leaving, Then};
 pub use shelf::Shelf;
+pub use thumbnails::{Picture, Thumbnails};
 
 use crate::notice::Notices;
 
@@ -218,7 +220,8 @@ fn free_path(folder: &Path, name: &str, ending: &str) -> PathBuf {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Selection>();
+    app.init_resource::<Selection>()
+        .init_resource::<Thumbnails>();
     begin::plugin(app);
     shelf::plugin(app);
     leave::plugin(app);

@@ -10,8 +10,6 @@ pub struct Shelf {
     pub library: Library,
     /// Whether the panel is open.
     pub open: bool,
-    /// What is typed into its search field.
-    pub query: String,
 }
 
 impl Shelf {

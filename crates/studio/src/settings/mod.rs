@@ -10,6 +10,7 @@ mod keep;
 mod look;
 mod patch;
 mod preview;
+mod shelf;
 mod snap;
 mod units;
 mod world;
@@ -23,6 +24,7 @@ pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
 pub use preview::PreviewSettings;
+pub use shelf::ShelfSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
 pub use units::UnitSettings;
 pub use world::WorldSettings;
@@ -37,6 +39,8 @@ pub struct Settings {
     pub hands: HandsSettings,
     /// In what lengths are read and written.
     pub units: UnitSettings,
+    /// What a person likes and used of the library.
+    pub shelf: ShelfSettings,
     /// What is remembered of files.
     pub files: FileSettings,
     /// Whether results are shown ahead.
