@@ -114,7 +114,7 @@ impl Desk {
         let world = self.app.world_mut();
         world.resource_mut::<Pointer>().pick(component.to_owned());
         self.settle();
-        let last = self.document().objects().map(|(id, _)| id).last();
+        let last = self.document().objects().map(|(id, _)| id).next_back();
         last.expect("it is there")
     }
 

@@ -106,14 +106,14 @@ impl Outline {
         if depth > 32 {
             return;
         }
-        for (id, group) in document.groups().filter(|(_, g)| g.parent == within) {
+        for (id, _) in document.groups().filter(|(_, g)| g.parent == within) {
             let here = |m: &ObjectId| document.object(*m).is_some_and(|o| o.layer == layer);
             let members = document.members(id);
             // A group is listed on each layer it has something on; an empty one on the base layer.
-            if !members.iter().any(here) && !(members.is_empty() && layer == LayerId::BASE) {
+            let homeless = members.is_empty() && layer == LayerId::BASE;
+            if !homeless && !members.iter().any(here) {
                 continue;
             }
-            let _ = group;
             rows.push((depth, Node::Group(id)));
             if !self.folded.contains(&Node::Group(id)) {
                 self.children(document, layer, Some(id), depth + 1, rows);

@@ -295,12 +295,12 @@ impl Controls {
         }
         let mut tapped = Vec::new();
         let mut used = Vec::new();
-        for i in 0..self.bounds.len() {
+        for (i, fits) in fits.into_iter().enumerate() {
             let whole = self.whole(&self.bounds[i], store, pad);
             let bound = &mut self.bounds[i];
             let heard = heard(bound, attention);
             let rank = heard.map(|special| (special, bound.parts.len()));
-            if fits[i] && rank == best[bound.main] {
+            if fits && rank == best[bound.main] {
                 used.extend(bound.parts[..bound.parts.len() - 1].iter().copied());
                 let patient = bound.control.is_patient() && bound.begins_chord;
                 bound.waiting = patient;
@@ -392,7 +392,8 @@ fn heard(bound: &Bound, attention: Attention) -> Option<bool> {
         Context::Stretch => attention.stretching && !typed,
         // Keys without Ctrl or Alt are the panel's that has the focus.
         Context::View => {
-            !typed && !(on_keys && attention.panel && !chord && bound.parts.iter().any(letter))
+            let taken = on_keys && attention.panel && !chord && bound.parts.iter().any(letter);
+            !typed && !taken
         }
     };
     open.then_some(context != Context::View)

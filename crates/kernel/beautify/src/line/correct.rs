@@ -35,7 +35,8 @@ pub fn correct_line(drawn: &Line, scaffold: &Scaffold, options: &LineOptions) ->
         refused,
     };
     let scale = options.metres_per_world;
-    if !drawn.a.is_finite() || !drawn.b.is_finite() || !(scale.is_finite() && scale > 0.0) {
+    let sound = drawn.a.is_finite() && drawn.b.is_finite() && scale.is_finite() && scale > 0.0;
+    if !sound {
         return as_drawn(false);
     }
     let mut line = *drawn;

@@ -182,7 +182,7 @@ impl<'a> Measure<'a> {
     /// The derivative of every sample by the `j`-th magnitude.
     fn samples_by(&self, j: usize, moved: &mut [DVec3]) {
         let segment = j / 2;
-        let (direction, which) = if j % 2 == 0 {
+        let (direction, which) = if j.is_multiple_of(2) {
             (self.curve.tangents[segment], 1)
         } else {
             (-self.curve.tangents[segment + 1], 2)

@@ -83,7 +83,7 @@ const MOST_SAMPLES: usize = 4_000;
 pub fn fair_stroke(points: &[DVec3], scaffold: &Scaffold, options: &StrokeOptions) -> Fair {
     let drawn = Polyline::new(points.iter().copied());
     let scale = options.metres_per_world;
-    if drawn.points().len() < 2 || !(drawn.length() > 1e-9) || !(scale.is_finite() && scale > 0.0) {
+    if drawn.points().len() < 2 || drawn.length() < 1e-9 || !scale.is_finite() || scale <= 0.0 {
         return Fair::Nothing;
     }
     let spacing = (options.spacing / scale).max(drawn.length() / MOST_SAMPLES as f64);
