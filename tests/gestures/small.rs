@@ -1,18 +1,13 @@
 //! Every panel in windows of every size and at every scale.
 
-use bevy::prelude::*;
-use bevy::window::PrimaryWindow;
 use midair_studio::panel::Panels;
 use midair_studio::settings::{Lesson, Settings};
 
 use crate::desk::Desk;
 
 impl Desk {
-    fn resize(&mut self, width: f32, height: f32) {
-        let world = self.app.world_mut();
-        let mut windows = world.query_filtered::<&mut Window, With<PrimaryWindow>>();
-        let mut window = windows.single_mut(world).unwrap();
-        window.resolution.set(width, height);
+    fn window(&mut self, width: f32, height: f32) {
+        self.resize(width, height);
         self.wait(3);
     }
 
@@ -41,12 +36,12 @@ fn every_panel_is_drawn_in_windows_of_every_size() {
             (640.0, 360.0),
             (2560.0, 1440.0),
         ] {
-            desk.resize(width, height);
+            desk.window(width, height);
         }
         for scale in [0.5, 2.5] {
             let mut settings = desk.app.world_mut().resource_mut::<Settings>();
             settings.look.interface_scale = scale;
-            desk.resize(1280.0, 720.0);
+            desk.window(1280.0, 720.0);
         }
         let mut settings = desk.app.world_mut().resource_mut::<Settings>();
         settings.look.interface_scale = 1.0;
@@ -58,11 +53,11 @@ fn a_tiny_window_keeps_the_bar_and_a_grown_one_has_everything_again() {
     let mut desk = Desk::new();
     desk.alone("library");
     assert!(desk.regions().contains(&"library"));
-    desk.resize(200.0, 100.0);
+    desk.window(200.0, 100.0);
     assert!(desk.regions().contains(&"bar"), "{:?}", desk.regions());
     assert!(!desk.regions().contains(&"library"));
     assert!(desk.is_open("library"), "it is only out of sight");
-    desk.resize(1280.0, 720.0);
+    desk.window(1280.0, 720.0);
     assert!(desk.regions().contains(&"library"));
     assert!(desk.regions().contains(&"bar"));
 }
