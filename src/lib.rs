@@ -18,6 +18,7 @@ use midair_library::Volumes;
 use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
+    help::GuidePlugin,
     project::{Begin, KeepPlugin, Places},
     settings::KeepSettingsPlugin,
     show::RoomPlugin,
@@ -96,7 +97,13 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         .add_plugins(MidairPlugins);
     match stage {
         Stage::Window => {
-            app.add_plugins((RoomPlugin, FlatscreenPlugin, KeepPlugin, KeepSettingsPlugin));
+            app.add_plugins((
+                RoomPlugin,
+                FlatscreenPlugin,
+                GuidePlugin,
+                KeepPlugin,
+                KeepSettingsPlugin,
+            ));
         }
         Stage::Picture => {
             app.add_plugins(RoomPlugin);

@@ -1,6 +1,8 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use bevy::app::AppExit;
+use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
 use midair_document::{Document, MeshStore, Object};
 use midair_playback::RecorderPlugin;
 use midair_studio::project::{Begin, Places};
@@ -26,6 +28,7 @@ pub(super) fn run(args: Window) -> Result<()> {
              desktop, or run a session without one: midair play assets/sessions/cup.ron --export cup.stl"
         );
     }
+    say_when_nothing_draws();
     let mut app = app(
         Stage::Window,
         places,
@@ -34,6 +37,15 @@ pub(super) fn run(args: Window) -> Result<()> {
             journal: true,
         },
     );
+    app.insert_resource(RenderErrorHandler(|error, main, _| {
+        eprintln!(
+            "midair: the graphics card stopped drawing ({:?}), so the window closes. Your work is kept: \
+             start Midair again and press Restore it",
+            error.ty
+        );
+        main.write_message(AppExit::error());
+        RenderErrorPolicy::StopRendering
+    }));
     if let Some(record) = args.record {
         app.add_plugins(RecorderPlugin::create(&record, "Recorded live")?);
     }
@@ -41,9 +53,28 @@ pub(super) fn run(args: Window) -> Result<()> {
         shot::window(&mut app, file);
     }
     match app.run() {
-        bevy::app::AppExit::Success => Ok(()),
-        bevy::app::AppExit::Error(code) => bail!("the window ended with status {code}"),
+        AppExit::Success => Ok(()),
+        AppExit::Error(code) => bail!("the window ended with status {code}"),
     }
+}
+
+/// The engine panics, on a thread of its own, where nothing can draw: one line instead.
+fn say_when_nothing_draws() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let said = panic.payload_as_str().unwrap_or_default();
+        if said.starts_with("Unable to find a GPU")
+            || said.starts_with("Failed to create wgpu surface")
+        {
+            eprintln!(
+                "midair: no graphics card was found that can draw a window. Install its Vulkan driver \
+                 (mesa-vulkan-drivers has one that needs no card), or run a session without a window: \
+                 midair play assets/sessions/cup.ron --export cup.stl"
+            );
+            std::process::exit(1);
+        }
+        usual(panic);
+    }));
 }
 
 #[cfg(target_os = "linux")]

@@ -53,6 +53,14 @@ DISPLAY=:$(cat "$home/display")
 export DISPLAY
 unset WAYLAND_DISPLAY
 
+# Without anything that draws: one clear line, status 1.
+status=0
+VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent WGPU_BACKEND=vulkan \
+  timeout 60 "$midair" >/dev/null 2>"$home/none" || status=$?
+[ $status -eq 1 ] && [ "$(grep -c '^midair: no graphics card' "$home/none")" -eq 1 ] ||
+  fail "without a graphics card: $status $(cat "$home/none")"
+pass "a missing graphics card is one line and status 1"
+
 "$midair" --record "$home/session.ron" >"$home/log" 2>&1 &
 app=$!
 until_true 60 "the window opens" xdotool search --name "Untitled - Midair"

@@ -7,6 +7,7 @@
 pub mod command;
 pub mod evaluate;
 pub mod hands;
+pub mod help;
 pub mod notice;
 pub mod objects;
 pub mod operands;
@@ -76,6 +77,7 @@ impl Plugin for StudioPlugin {
             evaluate::plugin,
             pick::plugin,
             show::plugin,
+            help::plugin,
         ))
         .add_plugins((plane::plugin, ruler::plugin, snap::plugin, world::plugin));
     }

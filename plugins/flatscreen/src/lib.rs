@@ -15,6 +15,7 @@ mod gizmo;
 mod hints;
 mod keys;
 mod labels;
+mod names;
 mod orbit;
 mod panels;
 mod place;
@@ -98,6 +99,7 @@ impl Plugin for FlatscreenPlugin {
                     view::jump,
                     gizmo::draw,
                     labels::hands,
+                    names::tell,
                     panels::title,
                     panels::drop,
                     panels::close_window,

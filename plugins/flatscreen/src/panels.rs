@@ -65,6 +65,10 @@ impl Screen {
     }
 }
 
+/// Below these many points a window has no room for columns, and below these for more than the bar.
+const NARROW: f32 = 420.0;
+const LOW: f32 = 240.0;
+
 pub(crate) fn style(mut contexts: EguiContexts, mut screen: ResMut<Screen>) -> Result {
     if !screen.styled {
         panel::apply_style(contexts.ctx_mut()?);
@@ -133,33 +137,62 @@ fn draw(
             .layer_id(egui::LayerId::background())
             .max_rect(ctx.viewport_rect()),
     );
+    let window = ctx.viewport_rect().size();
     egui::Panel::top("bar").show(&mut root, |ui| {
         ui.add_space(4.0);
-        asks.extend(panel::bar(ui, &mut screen.bar, world, panels));
+        let mut bar = |ui: &mut egui::Ui| {
+            asks.extend(panel::bar(ui, &mut screen.bar, world, panels));
+        };
+        if window.y < LOW {
+            // The bar is what stays: it scrolls where it has more lines than there is room.
+            let scroll = egui::ScrollArea::vertical().max_height((window.y - 16.0).max(24.0));
+            scroll.show(ui, bar);
+        } else {
+            bar(ui);
+        }
         ui.add_space(2.0);
     });
     map.end("bar", false);
-    egui::Panel::bottom("hints").show(&mut root, |ui| {
-        ui.add_space(4.0);
-        panel::operands(ui, world.resource::<Project>().document());
-        let (bindings, device) = (world.resource(), world.resource::<Controls>().device());
-        let (hints, more) = hints::with_keys(world, focus.is_inside(), bindings, device);
-        let names = |action| key_name(action, bindings, device);
-        panel::hints(ui, &hints, &names, &more);
-        ui.add_space(4.0);
-    });
-    map.end("hints", false);
+    if window.y >= LOW {
+        egui::Panel::bottom("hints").show(&mut root, |ui| {
+            ui.add_space(4.0);
+            panel::operands(ui, world.resource::<Project>().document());
+            let (bindings, device) = (world.resource(), world.resource::<Controls>().device());
+            let (hints, more) = hints::with_keys(world, focus.is_inside(), bindings, device);
+            let names = |action| key_name(action, bindings, device);
+            panel::hints(ui, &hints, &names, &more);
+            ui.add_space(4.0);
+        });
+        map.end("hints", false);
+    }
     for (dock, side) in [
         (Dock::Left, egui::Panel::left("left").default_size(272.0)),
         (Dock::Right, egui::Panel::right("right").default_size(288.0)),
     ] {
         let open = panels.open_in(dock);
-        if !open.is_empty() {
+        // In a narrow window the view comes first; the panels are there again when it grows.
+        if !open.is_empty() && root.available_width() >= NARROW && window.y >= LOW {
             column(&mut root, side, &open, world, panels, &mut map, asks);
         }
     }
-    let view = root.available_rect_before_wrap();
+    let left = root.available_rect_before_wrap();
+    let view = egui::Rect::from_min_size(left.min, left.size().max(egui::Vec2::ZERO));
     screen.view = Some(view);
+    for info in panels.open_in(Dock::Corner) {
+        let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))
+            .id(egui::Id::new(info.id))
+            .title_bar(false)
+            .resizable(false)
+            .constrain_to(view)
+            .pivot(egui::Align2::LEFT_BOTTOM)
+            .fixed_pos(view.left_bottom() + egui::vec2(16.0, -16.0))
+            .vscroll(true)
+            .max_height((view.height() - 64.0).max(32.0))
+            .show(ctx, |ui| fill(ui, &info, world, panels, asks));
+        if let Some(shown) = shown {
+            map.layer(info.id, shown.response.layer_id);
+        }
+    }
     for info in panels.open_in(Dock::Window) {
         let mut open = true;
         let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))

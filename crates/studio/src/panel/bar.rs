@@ -2,7 +2,7 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
-use super::{Files, Panels, icon};
+use super::{Dock, Files, Panels, icon};
 use crate::command::{Command, Dialog, Dialogs, Errands};
 use crate::project::{Project, Recoverables, Then};
 use crate::settings::Settings;
@@ -68,8 +68,14 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
         ui.separator();
         for info in panels.all().iter().filter(|i| i.in_bar) {
             let open = panels.is_open(info.id);
+            // What is looked at now and then is an icon: the bar stays on one line.
+            let text = match info.dock {
+                Dock::Left | Dock::Right => format!("{} {}", info.icon, info.title),
+                _ => info.icon.to_owned(),
+            };
             if ui
-                .selectable_label(open, format!("{} {}", info.icon, info.title))
+                .selectable_label(open, text)
+                .on_hover_text(info.title)
                 .clicked()
             {
                 asks.push(Command::Panel {

@@ -17,6 +17,7 @@ mod outline;
 mod properties;
 mod registry;
 mod ring;
+mod settings;
 mod style;
 
 pub use bar::{Bar, bar};
@@ -107,5 +108,17 @@ pub(crate) fn plugin(app: &mut bevy::prelude::App) {
                 in_bar: false,
             },
             leave::Leave,
+        )
+        .add_panel(
+            PanelInfo {
+                id: "settings",
+                title: "Settings",
+                icon: icon::GEAR,
+                dock: Dock::Window,
+                order: 900,
+                open: false,
+                in_bar: true,
+            },
+            settings::SettingsPanel::default(),
         );
 }

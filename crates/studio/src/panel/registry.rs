@@ -16,6 +16,8 @@ pub enum Dock {
     Right,
     /// A window that floats over the view.
     Window,
+    /// A small window in the lower left corner of the view, out of the way of the work.
+    Corner,
     /// A question that is answered before anything else.
     Modal,
 }

@@ -6,6 +6,7 @@
 
 mod files;
 mod hands;
+mod help;
 mod keep;
 mod look;
 mod patch;
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 pub use files::FileSettings;
 pub use hands::HandsSettings;
+pub use help::{HelpSettings, Lesson, Progress};
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
 pub use patch::SettingFault;
@@ -49,6 +51,8 @@ pub struct Settings {
     pub snap: SnapSettings,
     /// How two hands move the world.
     pub world: WorldSettings,
+    /// How far one is with learning.
+    pub help: HelpSettings,
 }
 
 impl Settings {

@@ -1,0 +1,240 @@
+//! Everything that can be set, a page for each part; a new setting has its row at once.
+
+use bevy::prelude::World;
+use bevy_egui::egui::{self, DragValue, Ui};
+use serde_json::Value;
+
+use super::{Panel, icon};
+use crate::command::Command;
+use crate::settings::Settings;
+
+/// Parts that are remembered rather than set.
+const REMEMBERED: [&str; 2] = ["help", "files"];
+
+/// What one chooses from.
+const CHOICES: [(&str, &[&str]); 2] = [
+    ("look.room", &["Dusk", "Day", "Paper"]),
+    ("units.length", &["mm", "cm", "m", "inch"]),
+];
+
+/// Bounds of numbers that have sensible ones.
+const RANGES: [(&str, f64, f64); 3] = [
+    ("look.interface_scale", 0.5, 3.0),
+    ("snap.grid.step", 0.001, 1.0),
+    ("snap.angle.step", 1.0, 90.0),
+];
+
+#[derive(Default)]
+pub(super) struct SettingsPanel {
+    page: String,
+    /// What is looked for.
+    query: String,
+    /// The number that is being dragged or typed: sent once when it is let go.
+    number: Option<(String, f64)>,
+}
+
+impl Panel for SettingsPanel {
+    fn show(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
+        let now = serde_json::to_value(world.resource::<Settings>());
+        let usual = serde_json::to_value(Settings::default());
+        let (Ok(Value::Object(now)), Ok(usual)) = (now, usual) else {
+            return;
+        };
+        let parts: Vec<_> = now
+            .iter()
+            .filter(|(part, _)| !REMEMBERED.contains(&part.as_str()))
+            .collect();
+        ui.set_min_width(ui.available_width().min(360.0));
+        ui.add(egui::TextEdit::singleline(&mut self.query).hint_text("Find a setting"));
+        let query = self.query.trim().to_lowercase();
+        if query.is_empty() {
+            ui.horizontal_wrapped(|ui| {
+                for (part, _) in &parts {
+                    if self.page.is_empty() {
+                        self.page.clone_from(part);
+                    }
+                    let open = self.page == **part;
+                    if ui.selectable_label(open, title(part)).clicked() {
+                        self.page.clone_from(part);
+                    }
+                }
+            });
+            ui.separator();
+        }
+        for (part, value) in parts {
+            if query.is_empty() && self.page != *part {
+                continue;
+            }
+            self.rows(ui, part, value, &query, asks);
+            if query.is_empty() {
+                ui.add_space(8.0);
+                self.foot(ui, part, value, &usual, asks);
+            }
+        }
+    }
+}
+
+impl SettingsPanel {
+    /// Every value below `key`, one row each.
+    fn rows(
+        &mut self,
+        ui: &mut Ui,
+        key: &str,
+        value: &Value,
+        query: &str,
+        asks: &mut Vec<Command>,
+    ) {
+        if let Value::Object(parts) = value {
+            for (name, value) in parts {
+                self.rows(ui, &format!("{key}.{name}"), value, query, asks);
+            }
+            return;
+        }
+        let label = label(key);
+        if !format!("{key} {label}").to_lowercase().contains(query) {
+            return;
+        }
+        match value {
+            Value::Bool(on) => {
+                let mut on = *on;
+                if ui.checkbox(&mut on, label).changed() {
+                    asks.push(Settings::command(key, on));
+                }
+            }
+            Value::Number(number) => {
+                ui.horizontal_wrapped(|ui| {
+                    let name = ui.label(label);
+                    let kept = number.as_f64().unwrap_or_default();
+                    self.number(ui, key, kept, number.is_f64(), name.id, asks);
+                });
+            }
+            Value::String(chosen) => {
+                let Some((_, choices)) = CHOICES.iter().find(|(k, _)| *k == key) else {
+                    return;
+                };
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(label);
+                    for &choice in *choices {
+                        let is = chosen == choice;
+                        if ui.selectable_label(is, choice).clicked() && !is {
+                            asks.push(Settings::command(key, choice));
+                        }
+                    }
+                });
+            }
+            Value::Null | Value::Array(_) | Value::Object(_) => {}
+        }
+    }
+
+    fn number(
+        &mut self,
+        ui: &mut Ui,
+        key: &str,
+        kept: f64,
+        broken: bool,
+        name: egui::Id,
+        asks: &mut Vec<Command>,
+    ) {
+        let own = self.number.as_ref().filter(|(k, _)| k == key);
+        let mut value = own.map_or(kept, |(_, v)| *v);
+        let range = RANGES.iter().find(|(k, ..)| *k == key);
+        let (low, high) = range.map_or((0.0, 1e3), |(_, low, high)| (*low, *high));
+        let drag = DragValue::new(&mut value)
+            .range(low..=high)
+            .speed((high - low).min(10.0) * 0.004)
+            .max_decimals(if broken { 3 } else { 0 });
+        let response = ui.add(drag).labelled_by(name);
+        if response.changed() {
+            self.number = Some((key.to_owned(), value));
+        }
+        if !response.dragged()
+            && !response.has_focus()
+            && let Some((_, value)) = self.number.take_if(|(k, _)| k == key)
+        {
+            asks.push(if broken {
+                // As short as it was typed.
+                Settings::command(key, (value * 1e3).round() / 1e3)
+            } else {
+                Settings::command(key, value as i64)
+            });
+        }
+    }
+
+    fn foot(&self, ui: &mut Ui, part: &str, value: &Value, usual: &Value, asks: &mut Vec<Command>) {
+        ui.horizontal_wrapped(|ui| {
+            if let Some(before) = usual.get(part) {
+                let reset =
+                    egui::Button::new(format!("{} As usual", icon::ARROW_COUNTER_CLOCKWISE));
+                let response = ui.add_enabled(before != value, reset);
+                if response.on_hover_text("Resets this page").clicked() {
+                    asks.push(Settings::command(part, before));
+                }
+            }
+            if part == "hands" && ui.button("Keys and buttons…").clicked() {
+                asks.push(Command::Panel {
+                    id: "controls".to_owned(),
+                    open: true,
+                });
+            }
+        });
+    }
+}
+
+fn title(part: &str) -> String {
+    match part {
+        "snap" => "Snaps".to_owned(),
+        _ => words(part),
+    }
+}
+
+/// What people read for a setting.
+fn label(key: &str) -> String {
+    match key {
+        "look.interface_scale" => "Size of panels and text".to_owned(),
+        "look.motion" => "Things ease into their places".to_owned(),
+        "hands.left_handed" => "The left hand leads".to_owned(),
+        "units.length" => "Lengths in".to_owned(),
+        "preview.on" => "Show the result while operands are marked".to_owned(),
+        _ => {
+            let rest = key.split_once('.').map_or(key, |(_, rest)| rest);
+            words(&rest.trim_end_matches(".on").replace('.', ": "))
+        }
+    }
+}
+
+fn words(name: &str) -> String {
+    let spaced = name.replace('_', " ");
+    let mut letters = spaced.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_choice_is_one_that_can_be_set() {
+        for (key, choices) in CHOICES {
+            for choice in choices {
+                let value = serde_json::to_string(choice).unwrap();
+                let fits = Settings::default().set(key, &value).is_ok();
+                assert!(fits, "{key} = {choice}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_page_goes_back_to_what_is_usual_by_one_command() {
+        let mut settings = Settings::default();
+        settings.set("hands.left_handed", "true").unwrap();
+        let usual = serde_json::to_value(Settings::default()).unwrap();
+        let Command::Set { key, value } = Settings::command("hands", &usual["hands"]) else {
+            panic!("a setting");
+        };
+        settings.set(&key, &value).unwrap();
+        assert_eq!(settings, Settings::default());
+    }
+}
