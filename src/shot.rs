@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use bevy::camera::RenderTarget;
-use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::renderer::RenderDevice;
@@ -13,6 +12,7 @@ use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use midair_csg::Preview;
 use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::project::Project;
+use midair_studio::show::{Eye, camera};
 
 /// How long a picture may take: a software renderer compiles its shaders first.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -41,10 +41,8 @@ pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
     };
     let view = frame_all(app.world());
     app.world_mut().spawn((
-        Camera3d::default(),
+        camera(Eye::Picture),
         RenderTarget::from(target.clone()),
-        Tonemapping::AcesFitted,
-        Msaa::Sample4,
         view,
     ));
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.

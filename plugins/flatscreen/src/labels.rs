@@ -5,6 +5,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     hands::{Action, Hands, Side},
+    panel::Palette,
     project::{Project, Shelf},
     show::{Cues, ObjectMap, Readouts},
 };
