@@ -2,7 +2,8 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use midair_document::{Document, MeshStore, Object};
-use midair_playback::RecorderPlugin;
+use midair_playback::{RecorderPlugin, Session, Step};
+use midair_studio::command::Command;
 use midair_studio::project::{Begin, Places};
 
 use super::{Window, open};
@@ -38,12 +39,28 @@ pub(super) fn run(args: Window) -> Result<()> {
         app.add_plugins(RecorderPlugin::create(&record, "Recorded live")?);
     }
     if let Some(file) = args.shot {
-        shot::window(&mut app, file);
+        let asks = match &args.play {
+            Some(session) => asks(&Session::load(session)?)?,
+            None => Vec::new(),
+        };
+        shot::window(&mut app, file, args.size, asks);
     }
     match app.run() {
         bevy::app::AppExit::Success => Ok(()),
         bevy::app::AppExit::Error(code) => bail!("the window ended with status {code}"),
     }
+}
+
+/// What a session asks for. In a window the hands are those of whoever sits there.
+fn asks(session: &Session) -> Result<Vec<Command>> {
+    let ask = |(i, step): (usize, &Step)| match step {
+        Step::Ask(command) => Ok(command.clone()),
+        _ => bail!(
+            "{}: before a picture of the window only Ask steps are played",
+            session.place(i)
+        ),
+    };
+    session.steps().iter().enumerate().map(ask).collect()
 }
 
 #[cfg(target_os = "linux")]

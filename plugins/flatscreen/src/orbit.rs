@@ -6,9 +6,11 @@ use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
 use midair_studio::{
     hands::HandsInput,
-    show::{Eye, FIELD_OF_VIEW, camera},
+    show::{Eye, camera},
     world::Similarity,
 };
+
+pub(crate) use midair_studio::show::FIELD_OF_VIEW;
 
 use crate::bindings::{Control, Controls};
 use crate::panels::Screen;
