@@ -1,11 +1,13 @@
 //! How every panel looks: colours, type, spacing.
 
+use bevy::color::ColorToPacked;
 use bevy_egui::egui::{
     self, Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Shadow,
     Stroke, TextStyle, Vec2, Visuals, style::WidgetVisuals,
 };
 
 use crate::settings::{LookSettings, RoomKind};
+use crate::show::Tint;
 
 /// The one accent: none of the operands' colours. Lines and rings, on dark and on light.
 pub const ACCENT: Color32 = Color32::from_rgb(0x8f, 0x7a, 0xe6);
@@ -94,6 +96,19 @@ impl Palette {
     pub fn of(visuals: &Visuals) -> Self {
         if visuals.dark_mode { DARK } else { LIGHT }
     }
+}
+
+/// An operand's colour as text: lighter on dark panels, darker on light ones, so that it reads.
+pub fn operand_text(tint: Tint, dark: bool) -> Color32 {
+    let [r, g, b, _] = tint.colour().to_srgba().to_u8_array();
+    let shade = |c: u8| {
+        if dark {
+            c.saturating_add(40)
+        } else {
+            (u16::from(c) / 2) as u8
+        }
+    };
+    Color32::from_rgb(shade(r), shade(g), shade(b))
 }
 
 /// The colours of panels in a room, as egui takes them.
@@ -303,6 +318,10 @@ mod tests {
                 v.selection.stroke.color,
                 v.selection.bg_fill,
             ));
+            for tint in [Tint::Union, Tint::Intersect, Tint::Subtract] {
+                let text = operand_text(tint, v.dark_mode);
+                pairs.push((format!("{tint:?}"), text, v.panel_fill));
+            }
             pairs.push(("what comes first".into(), p.on_fill, p.accent_fill));
             pairs.push(("what cannot be undone".into(), p.on_fill, p.danger_fill));
             for (name, text, fill) in pairs {

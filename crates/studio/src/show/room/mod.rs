@@ -263,7 +263,7 @@ fn paint(
         settings.minor_line_color = minor;
         settings.major_line_color = major;
         // Colour belongs to the model: the axes are told apart by their strength alone.
-        settings.x_axis_color = major.with_alpha(2.0 * major.alpha());
+        settings.x_axis_color = major.with_alpha(1.0).mix(&colours.air[0], 0.6);
         settings.z_axis_color = settings.x_axis_color;
     }
     let [middle, high, low] = colours.air.map(|c| c.to_linear());
