@@ -252,8 +252,7 @@ fn column(
                 ui.horizontal(|ui| {
                     ui.heading(format!("{}  {}", info.icon, info.title));
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        let button = egui::Button::new(panel::icon::X).frame(false);
-                        if ui.add(button).on_hover_text("Close").clicked() {
+                        if panel::kit::icon_button(ui, panel::icon::X, "Close", false).clicked() {
                             asks.push(close(info));
                         }
                     });

@@ -45,9 +45,7 @@ pub struct Palette {
     pub weak: Color32,
     /// Behind what is chosen or comes first; [`Palette::on_fill`] is read on it.
     pub accent_fill: Color32,
-    /// Behind what cannot be taken back.
-    pub danger_fill: Color32,
-    /// On both fills.
+    /// On that.
     pub on_fill: Color32,
     /// What went wrong, as text.
     pub warn: Color32,
@@ -63,7 +61,6 @@ const DARK: Palette = Palette {
     text: Color32::from_rgb(0xe8, 0xe6, 0xe2),
     weak: Color32::from_rgb(0xb6, 0xb8, 0xbf),
     accent_fill: Color32::from_rgb(0x68, 0x55, 0xc4),
-    danger_fill: Color32::from_rgb(0xb0, 0x3e, 0x39),
     on_fill: Color32::WHITE,
     warn: Color32::from_rgb(0xff, 0xb4, 0x8a),
 };
@@ -78,7 +75,6 @@ const LIGHT: Palette = Palette {
     text: Color32::from_rgb(0x22, 0x24, 0x2a),
     weak: Color32::from_rgb(0x50, 0x53, 0x5b),
     accent_fill: Color32::from_rgb(0x5e, 0x4a, 0xbe),
-    danger_fill: Color32::from_rgb(0xae, 0x3a, 0x35),
     on_fill: Color32::WHITE,
     warn: Color32::from_rgb(0x8f, 0x3f, 0x10),
 };
@@ -323,7 +319,6 @@ mod tests {
                 pairs.push((format!("{tint:?}"), text, v.panel_fill));
             }
             pairs.push(("what comes first".into(), p.on_fill, p.accent_fill));
-            pairs.push(("what cannot be undone".into(), p.on_fill, p.danger_fill));
             for (name, text, fill) in pairs {
                 assert_eq!(fill.a(), 255, "{room:?}: {name} is seen through");
                 let ratio = contrast(text, fill);
