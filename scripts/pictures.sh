@@ -39,20 +39,18 @@ window() {
     echo "Ask(Set(key: \"look.room\", value: \"\\\"$room\\\"\")),"
     echo "Ask(Set(key: \"look.interface_scale\", value: \"$scale\")),"
     printf 'Ask(%s),\n' "$@"
-    echo 'Wait(0),])'
-  } | grep -v 'Wait(0)' >"$home/$name.ron"
-  echo '])' >>"$home/$name.ron"
+    echo '])'
+  } >"$home/$name.ron"
   rm -rf "$MIDAIR_HOME"
-  "$midair" $file --shot "$to/$name.png" --size "$size" --play "$home/$name.ron"
+  "$midair" ${file:+"$file"} --shot "$to/$name.png" --size "$size" --play "$home/$name.ron"
 }
 open() { printf 'Panel(id: "%s", open: true)' "$1"; }
+select='Objects(Select(ids: [1, 3]))'
 still=$home/still.midair
 
 window empty Dusk "" "$(open library)"
-window assemble Dusk "$still" "$(open library)" "$(open outline)" "$(open properties)" "$(open operands)"
-window assemble-day Day "$still" "$(open library)" "$(open outline)" "$(open properties)" "$(open operands)"
-window assemble-paper Paper "$still" "$(open outline)" "$(open properties)"
+window assemble Dusk "$still" "$(open library)" "$(open properties)" "$select"
+window assemble-day Day "$still" "$(open library)" "$(open outline)" "$select"
+window assemble-paper Paper "$still" "$(open properties)" "$select"
 window export Dusk "$still" "$(open export)"
-window settings Day "$still" "$(open settings)"
-window tutorial Dusk "$still" "$(open tutorial)"
-window controls Paper "$still" "$(open controls)"
+window controls Day "$still" "$(open controls)"

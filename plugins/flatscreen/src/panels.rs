@@ -86,8 +86,10 @@ pub(crate) fn style(
         return Ok(());
     }
     let ctx = contexts.ctx_mut()?;
-    if screen.look.is_none() {
+    // Fonts that are asked for are there in the next frame.
+    if !panel::has_fonts(ctx) {
         panel::install_fonts(ctx);
+        return Ok(());
     }
     panel::apply_style(ctx, &settings.look);
     screen.look = Some(settings.look.clone());
@@ -103,6 +105,9 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
     else {
         return;
     };
+    if world.resource::<Screen>().look.is_none() {
+        return;
+    }
     let mut asks = Vec::new();
     world.resource_scope(|world, mut screen: Mut<Screen>| {
         world.resource_scope(|world, mut panels: Mut<Panels>| {

@@ -168,6 +168,12 @@ pub fn install_fonts(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
 }
 
+/// Whether the typeface is there: until then nothing may be drawn in it.
+pub fn has_fonts(ctx: &egui::Context) -> bool {
+    let strong = FontFamily::Name(STRONG.into());
+    ctx.fonts(|fonts| fonts.definitions().families.contains_key(&strong))
+}
+
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     for (name, bytes) in [

@@ -50,8 +50,8 @@ impl Colours {
                     Color::srgba(0.72, 0.75, 0.82, 0.10),
                     Color::srgba(0.78, 0.81, 0.88, 0.26),
                 ],
-                light: [900.0, 20.0],
-                key: 5_200.0,
+                light: [620.0, 20.0],
+                key: 3_600.0,
             },
             RoomKind::Day => Self {
                 air: [
@@ -64,8 +64,8 @@ impl Colours {
                     Color::srgba(0.20, 0.22, 0.26, 0.16),
                     Color::srgba(0.16, 0.18, 0.22, 0.36),
                 ],
-                light: [1_150.0, 60.0],
-                key: 5_600.0,
+                light: [760.0, 40.0],
+                key: 3_900.0,
             },
             RoomKind::Paper => Self {
                 air: [
@@ -78,8 +78,8 @@ impl Colours {
                     Color::srgba(0.30, 0.32, 0.38, 0.10),
                     Color::srgba(0.24, 0.26, 0.32, 0.24),
                 ],
-                light: [1_200.0, 60.0],
-                key: 5_600.0,
+                light: [800.0, 40.0],
+                key: 3_900.0,
             },
         }
     }
