@@ -5,14 +5,15 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use bevy::camera::RenderTarget;
-use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::renderer::RenderDevice;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use midair_csg::Preview;
+use midair_studio::command::Command;
 use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::project::Project;
+use midair_studio::show::{Eye, camera};
 
 /// How long a picture may take: a software renderer compiles its shaders first.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -41,10 +42,8 @@ pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
     };
     let view = frame_all(app.world());
     app.world_mut().spawn((
-        Camera3d::default(),
+        camera(Eye::Picture),
         RenderTarget::from(target.clone()),
-        Tonemapping::AcesFitted,
-        Msaa::Sample4,
         view,
     ));
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
@@ -109,14 +108,29 @@ fn frame_all(world: &World) -> Transform {
     Transform::from_translation(centre + from * radius * 2.3).looking_at(centre, Vec3::Y)
 }
 
-/// In a window: saves a picture once everything is made and drawn, and ends the app.
-pub(crate) fn window(app: &mut App, file: PathBuf) {
+/// Frames between two things that are asked for: panels take their places.
+const BEAT: u32 = 4;
+
+/// In a window: asks for `asks`, saves a picture once everything is made and drawn, and ends the app.
+pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, asks: Vec<Command>) {
+    if let Some((width, height)) = size {
+        for mut window in app
+            .world_mut()
+            .query::<&mut Window>()
+            .iter_mut(app.world_mut())
+        {
+            window.resolution.set_physical_resolution(width, height);
+        }
+    }
+    let mut asks = asks.into_iter();
+    let mut frame = 0;
     let mut settled = 0;
     app.init_resource::<Taken>().add_systems(
         // Before the end of the frame, where a clean end is seen.
         PostUpdate,
         move |evaluations: Res<Evaluations>,
               mut taken: ResMut<Taken>,
+              mut ask: MessageWriter<Command>,
               mut commands: Commands,
               mut exit: MessageWriter<AppExit>| {
             if let Some(image) = taken.0.take() {
@@ -130,7 +144,12 @@ pub(crate) fn window(app: &mut App, file: PathBuf) {
                     AppExit::error()
                 });
             }
-            settled = if evaluations.outstanding() == 0 {
+            frame += 1;
+            let next = if frame % BEAT == 0 { asks.next() } else { None };
+            settled = if let Some(next) = next {
+                ask.write(next);
+                0
+            } else if asks.len() == 0 && evaluations.outstanding() == 0 {
                 settled + 1
             } else {
                 0

@@ -39,6 +39,12 @@ pub struct Window {
     /// Save a picture of the window after it has drawn the first solids, and quit
     #[arg(long, value_name = "FILE.png", hide = true)]
     shot: Option<PathBuf>,
+    /// How large that window is
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "shot", hide = true)]
+    size: Option<(u32, u32)>,
+    /// A session of what is asked for before that picture: only its `Ask` steps
+    #[arg(long, value_name = "SESSION", requires = "shot", hide = true)]
+    play: Option<PathBuf>,
 }
 
 #[derive(Subcommand, Debug)]
@@ -160,6 +166,15 @@ fn step(text: &str) -> Result<f32, String> {
     } else {
         Err("a step lies between 0.0001 and 1 metre".to_owned())
     }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let pair = text.split_once('x').and_then(|(w, h)| {
+        let (w, h) = (w.parse::<u32>().ok()?, h.parse::<u32>().ok()?);
+        (1..=8192).contains(&w.min(h)).then_some((w, h))
+    });
+    pair.filter(|p| p.0.max(p.1) <= 8192)
+        .ok_or_else(|| "give width and height in pixels, as in 1280x720".to_owned())
 }
 
 /// Carries one command out.

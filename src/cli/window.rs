@@ -4,7 +4,8 @@ use anyhow::{Result, bail};
 use bevy::app::AppExit;
 use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
 use midair_document::{Document, MeshStore, Object};
-use midair_playback::RecorderPlugin;
+use midair_playback::{RecorderPlugin, Session, Step};
+use midair_studio::command::Command;
 use midair_studio::project::{Begin, Places};
 
 use super::{Window, open};
@@ -50,7 +51,11 @@ pub(super) fn run(args: Window) -> Result<()> {
         app.add_plugins(RecorderPlugin::create(&record, "Recorded live")?);
     }
     if let Some(file) = args.shot {
-        shot::window(&mut app, file);
+        let asks = match &args.play {
+            Some(session) => asks(&Session::load(session)?)?,
+            None => Vec::new(),
+        };
+        shot::window(&mut app, file, args.size, asks);
     }
     match app.run() {
         AppExit::Success => Ok(()),
@@ -75,6 +80,18 @@ fn say_when_nothing_draws() {
         }
         usual(panic);
     }));
+}
+
+/// What a session asks for. In a window the hands are those of whoever sits there.
+fn asks(session: &Session) -> Result<Vec<Command>> {
+    let ask = |(i, step): (usize, &Step)| match step {
+        Step::Ask(command) => Ok(command.clone()),
+        _ => bail!(
+            "{}: before a picture of the window only Ask steps are played",
+            session.place(i)
+        ),
+    };
+    session.steps().iter().enumerate().map(ask).collect()
 }
 
 #[cfg(target_os = "linux")]

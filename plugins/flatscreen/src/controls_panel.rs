@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use midair_studio::{
     command::Command,
     panel::{
-        ACCENT, AddPanel, Dock, Panel, PanelInfo,
+        AddPanel, Dock, Panel, PanelInfo,
         egui::{self, RichText, Ui},
         icon,
     },
@@ -175,7 +175,7 @@ impl ControlsPanel {
         };
         let mut button = egui::Button::new(text).truncate();
         if waits {
-            button = button.fill(ACCENT.gamma_multiply(0.65));
+            button = button.selected(true);
         }
         let clears = !names.is_empty() && !waits;
         let width = if clears { KEYS - 32.0 } else { KEYS };

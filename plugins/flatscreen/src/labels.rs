@@ -5,6 +5,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     hands::{Action, Hands, Side},
+    panel::Palette,
     project::{Project, Shelf},
     show::{Cues, ObjectMap, Readouts},
 };
@@ -38,7 +39,7 @@ pub(crate) fn objects(
         let Some(at) = map.get(id).and_then(|e| transforms.get(e).ok()) else {
             continue;
         };
-        let Ok(screen) = camera.world_to_viewport(eye, at.translation()) else {
+        let Ok(at) = camera.world_to_viewport(eye, at.translation()) else {
             continue;
         };
         let galley = painter.layout_no_wrap(
@@ -46,10 +47,8 @@ pub(crate) fn objects(
             egui::FontId::proportional(16.0),
             egui::Color32::WHITE,
         );
-        let rect = egui::Rect::from_center_size(
-            egui::pos2(screen.x, screen.y),
-            galley.size() + egui::vec2(16.0, 8.0),
-        );
+        let rect =
+            egui::Rect::from_center_size(screen.point(at), galley.size() + egui::vec2(16.0, 8.0));
         let [r, g, b, _] = cue.tint.colour().to_srgba().to_u8_array();
         painter.rect_filled(rect, 6.0, egui::Color32::from_black_alpha(200));
         painter.rect_stroke(
@@ -92,13 +91,14 @@ pub(crate) fn empty(
         format!("Press {key} for the library")
     };
     let at = egui::pos2(view.center().x, view.top() + 0.3 * view.height());
+    let palette = Palette::of(&ctx.global_style().visuals);
     for (text, size, down, colour) in [
-        (first.as_str(), 24.0, 0.0, egui::Color32::from_gray(0xec)),
+        (first.as_str(), 24.0, 0.0, palette.text),
         (
             "or drop a mesh or a document here",
             15.0,
             32.0,
-            egui::Color32::from_gray(0xb8),
+            palette.weak,
         ),
     ] {
         painter.text(

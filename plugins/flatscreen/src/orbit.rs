@@ -2,19 +2,19 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
-use bevy::light::ShadowFilteringMethod;
 use bevy::prelude::*;
-use bevy::render::renderer::RenderAdapterInfo;
-use midair_studio::{hands::HandsInput, show::is_software, world::Similarity};
+use midair_studio::{
+    hands::HandsInput,
+    show::{Eye, camera},
+    world::Similarity,
+};
+
+pub(crate) use midair_studio::show::FIELD_OF_VIEW;
 
 use crate::bindings::{Control, Controls};
 use crate::panels::Screen;
 use crate::pointer::Pointer;
-
-/// Of the height of the window, in radians.
-pub(crate) const FIELD_OF_VIEW: f32 = 0.75;
 
 /// Metres to the focus at the start, where the world has its own size in the hands.
 const FIRST_DISTANCE: f32 = 2.2;
@@ -150,26 +150,11 @@ impl Orbit {
     }
 }
 
-pub(crate) fn spawn(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>) {
+pub(crate) fn spawn(mut commands: Commands) {
     let orbit = Orbit::default();
-    // Without a graphics card a frame in time is worth more than a smooth edge.
-    let software = adapter.is_some_and(|a| is_software(&a));
-    let (samples, shadows) = if software {
-        (Msaa::Off, ShadowFilteringMethod::Hardware2x2)
-    } else {
-        (Msaa::Sample4, ShadowFilteringMethod::Gaussian)
-    };
     commands.spawn((
         Name::new("camera"),
-        Camera3d::default(),
-        Projection::Perspective(PerspectiveProjection {
-            fov: FIELD_OF_VIEW,
-            near: 0.02,
-            ..default()
-        }),
-        Tonemapping::AcesFitted,
-        samples,
-        shadows,
+        camera(Eye::Working),
         orbit.transform(),
         orbit,
     ));

@@ -10,6 +10,7 @@ use midair_studio::{
     notice::Notices,
     panel::{self, Bar, Dock, PanelInfo, Panels},
     project::{Project, Then},
+    settings::{LookSettings, Settings},
 };
 
 use crate::bindings::Controls;
@@ -23,7 +24,10 @@ use crate::pointer::Pointer;
 #[derive(Resource, Default)]
 pub(crate) struct Screen {
     bar: Bar,
-    styled: bool,
+    /// The look that the panels have.
+    look: Option<LookSettings>,
+    /// Logical pixels of the window per point of a panel.
+    scale: f32,
     /// What the panels leave free.
     view: Option<egui::Rect>,
     /// A menu, a list or a slider has the pointer wherever it is.
@@ -41,7 +45,8 @@ impl Screen {
         let (Some(cursor), Some(view)) = (cursor, self.view) else {
             return true;
         };
-        self.busy || self.floating || !view.contains(egui::pos2(cursor.x, cursor.y))
+        let at = self.point(cursor);
+        self.busy || self.floating || !view.contains(at)
     }
 
     /// Whether keys are a panel's and not shortcuts.
@@ -54,14 +59,21 @@ impl Screen {
         self.text
     }
 
-    /// What the panels leave free.
+    /// Where a place in the window is among the panels.
+    pub fn point(&self, at: Vec2) -> egui::Pos2 {
+        let scale = if self.scale > 0.0 { self.scale } else { 1.0 };
+        egui::pos2(at.x / scale, at.y / scale)
+    }
+
+    /// What the panels leave free, in points.
     pub fn view(&self) -> Option<egui::Rect> {
         self.view
     }
 
     /// The middle of what the panels leave free, in pixels of the window.
     pub fn centre(&self) -> Option<Vec2> {
-        self.view.map(|v| Vec2::new(v.center().x, v.center().y))
+        self.view
+            .map(|v| Vec2::new(v.center().x, v.center().y) * self.scale)
     }
 }
 
@@ -69,11 +81,22 @@ impl Screen {
 const NARROW: f32 = 420.0;
 const LOW: f32 = 240.0;
 
-pub(crate) fn style(mut contexts: EguiContexts, mut screen: ResMut<Screen>) -> Result {
-    if !screen.styled {
-        panel::apply_style(contexts.ctx_mut()?);
-        screen.styled = true;
+pub(crate) fn style(
+    mut contexts: EguiContexts,
+    settings: Res<Settings>,
+    mut screen: ResMut<Screen>,
+) -> Result {
+    if screen.look.as_ref() == Some(&settings.look) {
+        return Ok(());
     }
+    let ctx = contexts.ctx_mut()?;
+    // Fonts that are asked for are there in the next frame.
+    if !panel::has_fonts(ctx) {
+        panel::install_fonts(ctx);
+        return Ok(());
+    }
+    panel::apply_style(ctx, &settings.look);
+    screen.look = Some(settings.look.clone());
     Ok(())
 }
 
@@ -86,6 +109,9 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
     else {
         return;
     };
+    if world.resource::<Screen>().look.is_none() {
+        return;
+    }
     let mut asks = Vec::new();
     world.resource_scope(|world, mut screen: Mut<Screen>| {
         world.resource_scope(|world, mut panels: Mut<Panels>| {
@@ -129,6 +155,7 @@ fn draw(
     asks: &mut Vec<Command>,
 ) {
     focus.begin(ctx);
+    screen.scale = ctx.zoom_factor();
     let mut map = Map::new(ctx);
     let mut root = egui::Ui::new(
         ctx.clone(),
@@ -263,8 +290,7 @@ fn column(
                 ui.horizontal(|ui| {
                     ui.heading(format!("{}  {}", info.icon, info.title));
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        let button = egui::Button::new(panel::icon::X).frame(false);
-                        if ui.add(button).on_hover_text("Close").clicked() {
+                        if panel::kit::icon_button(ui, panel::icon::X, "Close", false).clicked() {
                             asks.push(close(info));
                         }
                     });

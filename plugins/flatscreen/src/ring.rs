@@ -98,7 +98,7 @@ pub(crate) fn show(
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("ring"));
     let middle = ring
         .from
-        .map(|at| egui::pos2(at.x, at.y))
+        .map(|at| screen.point(at))
         .filter(|at| view.shrink(1.6 * RADIUS).contains(*at))
         .unwrap_or(view.center());
     let style = ctx.global_style();

@@ -2,7 +2,7 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
-use super::{Dock, Files, Panels, icon};
+use super::{Dock, Files, Panels, icon, kit};
 use crate::command::{Command, Dialog, Dialogs, Errands};
 use crate::project::{Project, Recoverables, Then};
 use crate::settings::Settings;
@@ -98,8 +98,7 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             };
             let text = format!("Work from an earlier run{number} {verb} not saved.");
             ui.label(egui::RichText::new(text).strong());
-            let restore = egui::Button::new("Restore it").fill(super::ACCENT.gamma_multiply(0.65));
-            if ui.add(restore).clicked() {
+            if kit::primary(ui, "Restore it").clicked() {
                 asks.push(Command::Leave(Then::Restore));
             }
             if ui

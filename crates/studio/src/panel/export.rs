@@ -6,7 +6,7 @@ use bevy_egui::egui::{self, Ui};
 use midair_document::{Document, ObjectId};
 use midair_mesh::Unit;
 
-use super::{ACCENT, Panel, icon};
+use super::{Panel, icon};
 use crate::command::Command;
 use crate::evaluate::{Evaluations, Key};
 use crate::objects::extent;
@@ -160,8 +160,7 @@ impl Panel for Export {
         ui.add_space(12.0);
         let name = self.name.clone().unwrap_or_default();
         let named = !name.trim().is_empty() && !name.contains(['/', '\\']);
-        let button = egui::Button::new(format!("{}  Export", icon::EXPORT))
-            .fill(ACCENT.gamma_multiply(0.65));
+        let button = egui::Button::new(format!("{}  Export", icon::EXPORT)).selected(true);
         ui.horizontal(|ui| {
             let why = if named {
                 "There is nothing to write"

@@ -1,5 +1,6 @@
-use bevy_egui::egui::{Color32, RichText, Ui};
+use bevy_egui::egui::{RichText, Ui};
 
+use super::kit;
 use crate::hands::Action;
 use crate::tools::{HintKey, Hints};
 
@@ -10,7 +11,7 @@ pub type KeyNames<'a> = &'a dyn Fn(Action) -> String;
 pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames<'_>, more: &[(String, String)]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        ui.label(RichText::new(&hints.status).strong());
+        ui.label(kit::strong(&hints.status));
         let tools = hints.buttons.iter().map(|hint| {
             let key = match hint.action {
                 HintKey::Action(action) => names(action),
@@ -25,12 +26,8 @@ pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames<'_>, more: &[(String, S
                 continue;
             }
             ui.add_space(10.0);
-            let cap = RichText::new(format!(" {key} "))
-                .color(Color32::from_gray(0xf2))
-                .monospace()
-                .background_color(Color32::from_rgb(0x3c, 0x40, 0x4b));
-            ui.label(cap);
-            ui.label(RichText::new(does).color(Color32::from_gray(0xc4)));
+            kit::key_cap(ui, &key);
+            ui.label(RichText::new(does).weak());
         }
     });
 }

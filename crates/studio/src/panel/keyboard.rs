@@ -1,8 +1,8 @@
 //! A keyboard to point at: for a gamepad, and for wands.
 
-use bevy_egui::egui::{self, Color32, RichText, Sense, Ui, Vec2};
+use bevy_egui::egui::{self, RichText, Sense, Ui, Vec2};
 
-use super::{ACCENT, icon};
+use super::{Palette, icon};
 
 /// One key of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,15 +111,16 @@ pub fn keyboard(ui: &mut Ui, state: &Keyboard, names: [&str; 4]) -> Option<Key> 
 fn cap(ui: &mut Ui, text: &str, width: f32, chosen: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, SIDE), Sense::CLICK);
     let visuals = ui.visuals();
+    let palette = Palette::of(visuals);
     let fill = if chosen {
-        ACCENT.gamma_multiply(0.8)
+        palette.accent_fill
     } else if response.hovered() {
         visuals.widgets.hovered.weak_bg_fill
     } else {
         visuals.widgets.inactive.weak_bg_fill
     };
     let colour = if chosen {
-        Color32::WHITE
+        palette.on_fill
     } else {
         visuals.text_color()
     };

@@ -34,7 +34,7 @@ impl Panel for Leave {
             ] {
                 let mut button = bevy_egui::egui::Button::new(text);
                 if answer == Answer::Save {
-                    button = button.fill(super::ACCENT.gamma_multiply(0.65));
+                    button = button.selected(true);
                 }
                 if ui.add(button).clicked() {
                     asks.push(Command::Answer(answer));

@@ -8,6 +8,7 @@ mod export;
 mod files;
 mod hints;
 mod keyboard;
+pub mod kit;
 mod leave;
 mod library;
 mod notices;
@@ -29,7 +30,7 @@ pub use notices::{STAYS, notices};
 pub use objects::operands;
 pub use registry::{AddPanel, Dock, Panel, PanelInfo, Panels};
 pub use ring::{ring, sector};
-pub use style::{ACCENT, apply_style};
+pub use style::{ACCENT, Palette, RADIUS, UNIT, apply_style, has_fonts, install_fonts, visuals};
 
 pub use bevy_egui::egui;
 /// The one set of icons that every panel uses.

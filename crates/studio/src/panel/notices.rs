@@ -1,4 +1,4 @@
-use bevy_egui::egui::{Color32, RichText, Ui};
+use bevy_egui::egui::{RichText, Ui};
 
 use crate::notice::{Notices, Weight};
 
@@ -13,7 +13,7 @@ pub fn notices(ui: &mut Ui, notices: &Notices) -> bool {
         let text = RichText::new(&notice.text);
         ui.label(match notice.weight {
             Weight::Info => text,
-            Weight::Warning => text.color(Color32::from_rgb(0xff, 0xb4, 0x8a)),
+            Weight::Warning => text.color(ui.visuals().warn_fg_color),
         });
         any = true;
     }

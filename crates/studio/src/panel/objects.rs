@@ -1,8 +1,8 @@
-use bevy::color::ColorToPacked;
-use bevy_egui::egui::{Color32, RichText, Ui};
+use bevy_egui::egui::{RichText, Ui};
 use midair_document::Document;
 use midair_field::Op;
 
+use super::style::operand_text;
 use crate::show::Tint;
 
 /// The marked sequence, read left to right: ((A ∪ B) ∩ C) − D.
@@ -18,13 +18,7 @@ pub fn operands(ui: &mut Ui, document: &Document) {
                 Op::Intersect => Tint::Intersect,
                 Op::Subtract => Tint::Subtract,
             };
-            let [r, g, b, _] = tint.colour().to_srgba().to_u8_array();
-            // Lightened, so that it reads on the dark panel.
-            let colour = Color32::from_rgb(
-                r.saturating_add(40),
-                g.saturating_add(40),
-                b.saturating_add(40),
-            );
+            let colour = operand_text(tint, ui.visuals().dark_mode);
             if i > 0 {
                 ui.label(
                     RichText::new(tint.sign().unwrap_or(""))

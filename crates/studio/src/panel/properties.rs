@@ -7,7 +7,7 @@ use midair_document::{Colour, Document, Object, ObjectId};
 use midair_field::Placement;
 use midair_mesh::Unit;
 
-use super::{Panel, icon};
+use super::{Panel, icon, kit};
 use crate::command::Command;
 use crate::objects::{Ask, Axis, extent};
 use crate::project::{Project, Selection};
@@ -61,8 +61,10 @@ impl Panel for Properties {
         let unit = world.resource::<Settings>().units.length;
         let mut ask = Vec::new();
         let Some(first) = selection.first().and_then(|&id| document.object(id)) else {
-            ui.add_space(8.0);
-            ui.weak("Nothing is selected. Click an object, or its row in the outline.");
+            kit::empty(
+                ui,
+                "Nothing is selected. Click an object, or its row in the outline.",
+            );
             return;
         };
         egui::ScrollArea::vertical()

@@ -3,9 +3,9 @@
 use std::f32::consts::TAU;
 
 use bevy::math::Vec2;
-use bevy_egui::egui::{self, Align2, Color32, FontId, Painter, Pos2, Stroke, TextStyle};
+use bevy_egui::egui::{self, Align2, FontId, Painter, Pos2, Stroke, TextStyle};
 
-use super::ACCENT;
+use super::{ACCENT, Palette};
 use crate::tools::Tools;
 
 /// Nearer to the middle than this part of its radius, nothing is chosen.
@@ -32,6 +32,7 @@ pub fn ring(
     chosen: Option<usize>,
 ) {
     let visuals = &style.visuals;
+    let palette = Palette::of(visuals);
     painter.circle(
         middle,
         radius * 1.45,
@@ -45,7 +46,7 @@ pub fn ring(
         let at = middle + radius * egui::vec2(around.sin(), -around.cos());
         let active = tools.active().is_some_and(|t| t.id == tool.id);
         let (fill, text) = if chosen == Some(i) {
-            (ACCENT.gamma_multiply(0.8), Color32::WHITE)
+            (palette.accent_fill, palette.on_fill)
         } else {
             (visuals.widgets.inactive.weak_bg_fill, visuals.text_color())
         };

@@ -20,6 +20,8 @@ pub struct LookSettings {
     pub room: RoomKind,
     /// Whether edges of triangles are drawn.
     pub wireframe: bool,
+    /// Whether what appears and snaps eases in; without it, it is there at once.
+    pub motion: bool,
     /// Panels and text, as a multiple of their usual size.
     pub interface_scale: f32,
 }
@@ -29,6 +31,7 @@ impl Default for LookSettings {
         Self {
             room: RoomKind::default(),
             wireframe: false,
+            motion: true,
             interface_scale: 1.0,
         }
     }

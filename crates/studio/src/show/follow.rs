@@ -272,7 +272,7 @@ fn stand_in(
     }
 }
 
-/// As Bevy draws it. The vertices stay in main memory for picking and export of what is shown.
+/// As Bevy draws it.
 pub fn to_bevy_mesh(mesh: &TriMesh) -> Mesh {
     let normals: Vec<Vec3> = if mesh.normals.len() == mesh.positions.len() {
         mesh.normals.clone()
@@ -281,7 +281,8 @@ pub fn to_bevy_mesh(mesh: &TriMesh) -> Mesh {
     };
     Mesh::new(
         PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
+        // The line around what is touched is drawn from the mesh in main memory as well.
+        RenderAssetUsages::default(),
     )
     .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, mesh.positions.clone())
     .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)

@@ -18,7 +18,7 @@ pub(crate) use follow::display_steps;
 pub use follow::{Drawn, ObjectEntity, ObjectMap, to_bevy_mesh};
 pub use material::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
-pub use room::{Room, RoomPlugin, is_software};
+pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,12 @@
 //! The room: light, ground and air around the model.
 
+mod air;
+mod eye;
+mod lines;
+
 use bevy::{
     asset::RenderAssetUsages,
+    color::ColorToComponents,
     dev_tools::infinite_grid::{InfiniteGrid, InfiniteGridPlugin, InfiniteGridSettings},
     light::{
         CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight,
@@ -9,68 +14,73 @@ use bevy::{
     },
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
-    render::{
-        render_resource::{
-            Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
-        },
-        renderer::RenderAdapterInfo,
-    },
+    render::renderer::RenderAdapterInfo,
 };
 
-/// Which room one works in.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Room {
-    /// Calm and dark, the default.
-    #[default]
-    Dusk,
-    /// Bright.
-    Day,
+use crate::settings::{RoomKind, Settings};
+
+pub use eye::{Eye, FIELD_OF_VIEW, camera};
+
+/// The colours of a room.
+struct Colours {
+    /// The air at the horizon, overhead and underfoot.
+    air: [Color; 3],
+    /// What shows shadows: nearly the colour underfoot.
+    ground: Color,
+    /// Fine and strong lines of the ground.
+    lines: [Color; 2],
+    /// How strong the light of the air is, and what keeps the darkest corner legible.
+    light: [f32; 2],
+    /// The key light, in lux.
+    key: f32,
 }
 
-impl Room {
-    /// The colour of the air at the horizon.
-    pub fn air(self) -> Color {
-        match self {
-            Self::Dusk => Color::srgb_u8(0x41, 0x46, 0x50),
-            Self::Day => Color::srgb_u8(0xe2, 0xe4, 0xe7),
-        }
-    }
-
-    /// The colour overhead.
-    fn zenith(self) -> Color {
-        match self {
-            Self::Dusk => Color::srgb_u8(0x1d, 0x1f, 0x26),
-            Self::Day => Color::srgb_u8(0xb9, 0xc3, 0xd0),
-        }
-    }
-
-    /// The colour underfoot.
-    fn nadir(self) -> Color {
-        match self {
-            Self::Dusk => Color::srgb_u8(0x2a, 0x2d, 0x34),
-            Self::Day => Color::srgb_u8(0xc9, 0xcb, 0xcf),
-        }
-    }
-
-    /// What shows shadows: nearly the colour underfoot.
-    fn ground(self) -> Color {
-        match self {
-            Self::Dusk => Color::srgba_u8(0x2c, 0x2f, 0x36, 0xb0),
-            Self::Day => Color::srgba_u8(0xd8, 0xda, 0xde, 0xb0),
-        }
-    }
-
-    /// Fine and strong lines of the ground.
-    fn lines(self) -> [Color; 2] {
-        match self {
-            Self::Dusk => [
-                Color::srgba(0.72, 0.75, 0.82, 0.10),
-                Color::srgba(0.78, 0.81, 0.88, 0.26),
-            ],
-            Self::Day => [
-                Color::srgba(0.20, 0.22, 0.26, 0.18),
-                Color::srgba(0.16, 0.18, 0.22, 0.40),
-            ],
+impl Colours {
+    fn of(room: RoomKind) -> Self {
+        let rgb = Color::srgb_u8;
+        match room {
+            RoomKind::Dusk => Self {
+                air: [
+                    rgb(0x41, 0x46, 0x50),
+                    rgb(0x1d, 0x1f, 0x26),
+                    rgb(0x2a, 0x2d, 0x34),
+                ],
+                ground: Color::srgba_u8(0x2c, 0x2f, 0x36, 0xb0),
+                lines: [
+                    Color::srgba(0.72, 0.75, 0.82, 0.10),
+                    Color::srgba(0.78, 0.81, 0.88, 0.26),
+                ],
+                light: [620.0, 20.0],
+                key: 3_600.0,
+            },
+            RoomKind::Day => Self {
+                air: [
+                    rgb(0xe2, 0xe4, 0xe7),
+                    rgb(0xb9, 0xc3, 0xd0),
+                    rgb(0xc9, 0xcb, 0xcf),
+                ],
+                ground: Color::srgba_u8(0xd8, 0xda, 0xde, 0xb0),
+                lines: [
+                    Color::srgba(0.20, 0.22, 0.26, 0.16),
+                    Color::srgba(0.16, 0.18, 0.22, 0.36),
+                ],
+                light: [760.0, 40.0],
+                key: 3_900.0,
+            },
+            RoomKind::Paper => Self {
+                air: [
+                    rgb(0xff, 0xff, 0xff),
+                    rgb(0xfa, 0xfa, 0xfb),
+                    rgb(0xf4, 0xf4, 0xf5),
+                ],
+                ground: Color::srgba_u8(0xfa, 0xfa, 0xfa, 0xd0),
+                lines: [
+                    Color::srgba(0.30, 0.32, 0.38, 0.10),
+                    Color::srgba(0.24, 0.26, 0.32, 0.24),
+                ],
+                light: [800.0, 40.0],
+                key: 3_900.0,
+            },
         }
     }
 }
@@ -80,14 +90,18 @@ pub struct RoomPlugin;
 
 impl Plugin for RoomPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((InfiniteGridPlugin, super::guides::plugin))
-            .init_resource::<Room>()
+        app.add_plugins((InfiniteGridPlugin, super::guides::plugin, lines::plugin))
             .init_resource::<Air>()
             .insert_resource(DirectionalLightShadowMap { size: 1536 })
             .add_systems(Startup, furnish)
             .add_systems(
                 Update,
-                (paint.run_if(resource_changed::<Room>), breathe).chain(),
+                (
+                    paint.run_if(resource_changed::<Settings>),
+                    breathe,
+                    eye::afford,
+                )
+                    .chain(),
             );
     }
 }
@@ -102,6 +116,10 @@ struct Air {
 /// The disc that shows shadows.
 #[derive(Component)]
 struct Ground;
+
+/// The one lamp that casts shadows.
+#[derive(Component)]
+struct KeyLight;
 
 /// Metres from the middle within which the ground is seen in full, and to which it fades.
 const GROUND: [f32; 2] = [3.0, 14.0];
@@ -150,8 +168,9 @@ fn furnish(
     // One key light from above and to the left, soft enough that no side is lost.
     commands.spawn((
         Name::new("key light"),
+        KeyLight,
         DirectionalLight {
-            illuminance: 6_800.0,
+            illuminance: Colours::of(RoomKind::default()).key,
             color: Color::srgb(1.0, 0.97, 0.93),
             shadow_maps_enabled: shadows,
             // The defaults are for houses: here a thing of a few centimetres casts a shadow too.
@@ -168,15 +187,6 @@ fn furnish(
         }
         .build(),
         Transform::from_xyz(-1.6, 3.6, 2.2).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-    commands.spawn((
-        Name::new("fill light"),
-        DirectionalLight {
-            illuminance: 1_500.0,
-            color: Color::srgb(0.80, 0.87, 1.0),
-            ..default()
-        },
-        Transform::from_xyz(2.6, 1.0, -1.4).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 }
 
@@ -222,43 +232,53 @@ fn disc() -> Mesh {
 
 /// The room in its colours.
 fn paint(
-    room: Res<Room>,
+    settings: Res<Settings>,
+    mut painted: Local<Option<RoomKind>>,
     mut air: ResMut<Air>,
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
-    mut clear: ResMut<ClearColor>,
-    mut ambient: ResMut<GlobalAmbientLight>,
+    (mut clear, mut ambient): (ResMut<ClearColor>, ResMut<GlobalAmbientLight>),
     ground: Query<&MeshMaterial3d<StandardMaterial>, With<Ground>>,
+    mut key: Query<&mut DirectionalLight, With<KeyLight>>,
     mut grid: Query<&mut InfiniteGridSettings>,
 ) {
-    clear.0 = room.air();
-    // The light of the air says which way is up; this keeps the darkest corner legible.
-    ambient.brightness = match *room {
-        Room::Dusk => 60.0,
-        Room::Day => 160.0,
-    };
+    let room = settings.look.room;
+    if painted.replace(room) == Some(room) {
+        return;
+    }
+    let colours = Colours::of(room);
+    clear.0 = colours.air[0];
+    let [light, least] = colours.light;
+    ambient.brightness = least;
+    for mut key in &mut key {
+        key.illuminance = colours.key;
+    }
     for material in &ground {
         if let Some(mut material) = materials.get_mut(&material.0) {
-            material.base_color = room.ground();
+            material.base_color = colours.ground;
         }
     }
-    let [minor, major] = room.lines();
+    let [minor, major] = colours.lines;
     for mut settings in &mut grid {
         settings.minor_line_color = minor;
         settings.major_line_color = major;
         // Colour belongs to the model: the axes are told apart by their strength alone.
-        settings.x_axis_color = major.with_alpha(1.0).darker(0.30);
-        settings.z_axis_color = major.with_alpha(1.0).darker(0.30);
+        settings.x_axis_color = major.with_alpha(1.0).mix(&colours.air[0], 0.6);
+        settings.z_axis_color = settings.x_axis_color;
     }
-    air.sky = images.add(sky(*room));
-    let light = [0.95, 0.55, 0.30].map(|l| Color::srgb(0.96 * l, 0.98 * l, l));
-    air.light = EnvironmentMapLight {
-        intensity: match *room {
-            Room::Dusk => 950.0,
-            Room::Day => 1_500.0,
-        },
-        ..EnvironmentMapLight::hemispherical_gradient(&mut images, light[0], light[1], light[2])
-    };
+    let [middle, high, low] = colours.air.map(|c| c.to_linear());
+    air.sky = images.add(air::cube(128, 1, |from, _| {
+        let towards = if from.y < 0.0 { low } else { high };
+        // The light band at the horizon is narrow below and wide above.
+        let t = (from.y.abs() / if from.y < 0.0 { 0.45 } else { 0.75 }).min(1.0);
+        middle.mix(&towards, t * t * (3.0 - 2.0 * t)).to_vec3()
+    }));
+    if air.light.diffuse_map == Handle::default() {
+        let [matte, shine] = air::cubes();
+        air.light.diffuse_map = images.add(matte);
+        air.light.specular_map = images.add(shine);
+    }
+    air.light.intensity = light;
 }
 
 /// Every camera stands in the same air.
@@ -280,73 +300,5 @@ fn breathe(
                 air.light.clone(),
             ));
         }
-    }
-}
-
-/// A soft gradient from underfoot to overhead, as the six faces of a cube.
-fn sky(room: Room) -> Image {
-    const SIDE: u32 = 128;
-    let [low, middle, high] = [room.nadir(), room.air(), room.zenith()].map(|c| c.to_linear());
-    let mut texels = Vec::with_capacity((SIDE * SIDE * 6 * 8) as usize);
-    for face in 0..6 {
-        for row in 0..SIDE {
-            for column in 0..SIDE {
-                let [u, v] = [column, row].map(|i| 2.0 * (i as f32 + 0.5) / SIDE as f32 - 1.0);
-                let y = match face {
-                    2 => 1.0,
-                    3 => -1.0,
-                    _ => -v,
-                };
-                let height = y / (1.0 + u * u + v * v).sqrt();
-                let towards = if height < 0.0 { low } else { high };
-                // The light band at the horizon is narrow below and wide above.
-                let t = (height.abs() / if height < 0.0 { 0.45 } else { 0.75 }).min(1.0);
-                let colour = middle.mix(&towards, t * t * (3.0 - 2.0 * t));
-                for channel in [colour.red, colour.green, colour.blue, 1.0] {
-                    texels.extend(half(channel).to_le_bytes());
-                }
-            }
-        }
-    }
-    let mut image = Image::new(
-        Extent3d {
-            width: SIDE,
-            height: SIDE,
-            depth_or_array_layers: 6,
-        },
-        TextureDimension::D2,
-        texels,
-        // Eight bits would show as bands in so dark a gradient.
-        TextureFormat::Rgba16Float,
-        RenderAssetUsages::RENDER_WORLD,
-    );
-    image.texture_view_descriptor = Some(TextureViewDescriptor {
-        dimension: Some(TextureViewDimension::Cube),
-        ..default()
-    });
-    image
-}
-
-/// A number in [2⁻¹⁴, 2) as a binary16; smaller ones become 0.
-fn half(x: f32) -> u16 {
-    let bits = x.to_bits();
-    let exponent = (bits >> 23) as i32 - 127 + 15;
-    if exponent <= 0 {
-        return 0;
-    }
-    // Rounded: a carry into the exponent is right.
-    ((((exponent as u32) << 23 | bits & 0x7f_ffff) + 0x1000) >> 13) as u16
-}
-
-#[cfg(test)]
-mod tests {
-    use super::half;
-
-    #[test]
-    fn halves() {
-        assert_eq!(half(1.0), 0x3c00);
-        assert_eq!(half(0.5), 0x3800);
-        assert_eq!(half(0.333_25), 0x3555);
-        assert_eq!(half(0.0), 0);
     }
 }

@@ -1,0 +1,65 @@
+//! What every camera of the room has.
+
+use bevy::anti_alias::smaa::Smaa;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::light::ShadowFilteringMethod;
+use bevy::pbr::{ScreenSpaceAmbientOcclusion, ScreenSpaceAmbientOcclusionQualityLevel};
+use bevy::prelude::*;
+use bevy::render::renderer::RenderAdapterInfo;
+
+use super::is_software;
+
+/// Of the height of the view, in radians.
+pub const FIELD_OF_VIEW: f32 = 0.75;
+
+/// Who looks, and how much a frame may cost.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Eye {
+    /// Somebody works: a frame in time is worth more than a smooth edge.
+    Working,
+    /// A picture is taken: it has the time.
+    Picture,
+}
+
+/// A camera of the room; where it stands is to be added.
+pub fn camera(eye: Eye) -> impl Bundle {
+    (
+        eye,
+        Camera3d::default(),
+        Projection::Perspective(PerspectiveProjection {
+            fov: FIELD_OF_VIEW,
+            near: 0.02,
+            ..default()
+        }),
+        // The one curve that leaves base colours as they are: an operand's blue stays that blue.
+        Tonemapping::KhronosPbrNeutral,
+        Msaa::Off,
+    )
+}
+
+/// Each camera gets the edges and the shade that its renderer can afford. Shade in corners is computed from
+/// depths that several samples per pixel do not have, so it goes with edges that are smoothed afterwards. (In
+/// a headset four samples and no shade would be the choice: smoothing afterwards shimmers there.)
+pub(super) fn afford(
+    adapter: Option<Res<RenderAdapterInfo>>,
+    cameras: Query<(Entity, &Eye), Added<Eye>>,
+    mut commands: Commands,
+) {
+    let software = adapter.is_none_or(|a| is_software(&a));
+    for (entity, eye) in &cameras {
+        let mut camera = commands.entity(entity);
+        if software && *eye == Eye::Working {
+            camera.insert(ShadowFilteringMethod::Hardware2x2);
+        } else {
+            camera.insert((
+                Smaa::default(),
+                ScreenSpaceAmbientOcclusion {
+                    quality_level: ScreenSpaceAmbientOcclusionQualityLevel::High,
+                    // Things here are a few decimetres large.
+                    constant_object_thickness: 0.08,
+                },
+                ShadowFilteringMethod::Gaussian,
+            ));
+        }
+    }
+}

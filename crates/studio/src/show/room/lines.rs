@@ -1,0 +1,107 @@
+//! What stands out: edges around what is touched and selected, and the edges of triangles.
+
+use bevy::pbr::wireframe::{WireframeConfig, WireframePlugin};
+use bevy::prelude::*;
+use bevy::render::render_resource::WgpuFeatures;
+use bevy::render::renderer::RenderDevice;
+use bevy_mod_outline::{OutlinePlugin, OutlineStencil, OutlineVolume};
+
+use crate::StudioSet;
+use crate::notice::Notices;
+use crate::settings::{RoomKind, Settings};
+use crate::show::{Cue, Cues, ObjectEntity};
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins((OutlinePlugin::EXTRUDE_VERTEX, WireframePlugin::default()))
+        .add_systems(Update, edges.after(StudioSet::Cue))
+        .add_systems(Update, triangles.run_if(resource_changed::<Settings>));
+}
+
+/// Of the line around what is selected, and around what is touched: in the accent, and in the colour of
+/// text; width in logical pixels.
+fn line(room: RoomKind, cue: &Cue) -> Option<(Color, f32)> {
+    let selected = Color::srgb_u8(0x8f, 0x7a, 0xe6);
+    let touched = match room {
+        RoomKind::Dusk => Color::srgb_u8(0xf2, 0xf0, 0xec),
+        RoomKind::Day | RoomKind::Paper => Color::srgb_u8(0x26, 0x28, 0x2e),
+    };
+    match (cue.selected, cue.touched) {
+        // Both at once: the accent, wider.
+        (true, true) => Some((selected, 4.5)),
+        (true, false) => Some((selected, 3.0)),
+        (false, true) => Some((touched, 2.0)),
+        (false, false) => None,
+    }
+}
+
+/// Only what has a line carries one, so a thousand objects that have none cost nothing.
+fn edges(
+    cues: Res<Cues>,
+    settings: Res<Settings>,
+    mut objects: Query<(Entity, &ObjectEntity, Option<&mut OutlineVolume>), With<Mesh3d>>,
+    fresh: Query<(), Added<Mesh3d>>,
+    mut commands: Commands,
+) {
+    if !cues.is_changed() && !settings.is_changed() && fresh.is_empty() {
+        return;
+    }
+    let plain = Cue::default();
+    for (entity, object, volume) in &mut objects {
+        let cue = cues.0.get(&object.0).unwrap_or(&plain);
+        match (line(settings.look.room, cue), volume) {
+            (None, None) => {}
+            (None, Some(_)) => {
+                commands
+                    .entity(entity)
+                    .remove::<(OutlineVolume, OutlineStencil)>();
+            }
+            (Some((colour, width)), Some(mut volume)) => {
+                if volume.colour != colour || volume.width != width {
+                    volume.colour = colour;
+                    volume.width = width;
+                }
+            }
+            (Some((colour, width)), None) => {
+                commands.entity(entity).insert((
+                    OutlineVolume {
+                        visible: true,
+                        width,
+                        colour,
+                    },
+                    OutlineStencil::default(),
+                ));
+            }
+        }
+    }
+}
+
+/// Edges of triangles, where the graphics card draws lines.
+fn triangles(
+    settings: Res<Settings>,
+    device: Option<Res<RenderDevice>>,
+    config: Option<ResMut<WireframeConfig>>,
+    mut notices: ResMut<Notices>,
+    mut said: Local<bool>,
+) {
+    let Some(mut config) = config else { return };
+    let wanted = settings.look.wireframe;
+    let needs = WgpuFeatures::POLYGON_MODE_LINE | WgpuFeatures::IMMEDIATES;
+    if !device.is_some_and(|d| d.features().contains(needs)) {
+        if wanted && !std::mem::replace(&mut *said, true) {
+            notices.warn(
+                "Edges of triangles cannot be drawn: this graphics driver has no line mode. \
+                 A newer driver may have it.",
+            );
+        }
+        *said &= wanted;
+        return;
+    }
+    let colour = match settings.look.room {
+        RoomKind::Dusk => Color::srgba(0.05, 0.05, 0.07, 0.6),
+        RoomKind::Day | RoomKind::Paper => Color::srgba(0.10, 0.10, 0.13, 0.5),
+    };
+    if config.global != wanted || config.default_color != colour {
+        config.global = wanted;
+        config.default_color = colour;
+    }
+}
