@@ -8,6 +8,7 @@ mod holding;
 mod keyboard;
 mod leaving;
 mod mouse;
+mod mouse_session;
 mod objects;
 mod operands;
 mod oracle;

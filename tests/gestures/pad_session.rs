@@ -35,7 +35,7 @@ impl Desk {
 }
 
 /// The mesh that the button for saving wrote.
-fn saved(home: &Path) -> PathBuf {
+pub fn saved(home: &Path) -> PathBuf {
     let work = Places::below(home).work;
     let files = std::fs::read_dir(&work).unwrap().map(|e| e.unwrap().path());
     let mut meshes: Vec<_> = files
