@@ -3,7 +3,7 @@
 use bevy::input::keyboard::{Key, NativeKey};
 use bevy::prelude::*;
 use midair_document::ObjectId;
-use midair_flatscreen::{Gizmo, Orbit, Pointer};
+use midair_flatscreen::{Gizmo, Mode, Orbit, Pointer};
 use midair_studio::hands::{HandsInput, Side};
 use midair_studio::plane::WorkPlane;
 use midair_studio::project::{Project, Selection};
@@ -188,6 +188,39 @@ fn a_handle_moves_all_that_is_selected_in_one_step_and_escape_puts_it_back() {
     assert_eq!(desk.steps(), steps + 1);
     desk.strike(&[(KeyCode::ControlLeft, Key::Control), (KeyCode::KeyZ, PLAIN)]);
     assert_eq!([desk.stands(a), desk.stands(b)], before);
+}
+
+#[test]
+fn handles_turn_in_steps_and_scale() {
+    let mut desk = Desk::new();
+    let a = desk.thing("solid/cube");
+    desk.app
+        .world_mut()
+        .write_message(Settings::command("snap.angle.on", true));
+    desk.hover(a);
+    desk.click();
+    desk.strike_one(KeyCode::KeyT);
+    assert_eq!(desk.world().resource::<Gizmo>().mode, Some(Mode::Turn));
+    let pivot = desk.stands(a);
+    let eye = desk.orbit().transform().translation;
+    let ring = 0.12 * pivot.distance(eye);
+    let at = |degrees: f32| pivot + Quat::from_rotation_y(degrees.to_radians()) * Vec3::X * ring;
+    let (from, to) = (desk.pixel(at(-60.0)), desk.pixel(at(-29.0)));
+    desk.drag(MouseButton::Left, from, to);
+    let turned = desk.document().object(a).unwrap().placement.rotation;
+    let wanted = Quat::from_rotation_y(30_f32.to_radians());
+    assert!(turned.angle_between(wanted) < 1e-3, "{turned}");
+    desk.strike_one(KeyCode::KeyY);
+    let (from, to) = (
+        desk.pixel(pivot),
+        desk.pixel(pivot) + Vec2::new(40.0, -40.0),
+    );
+    desk.drag(MouseButton::Left, from, to);
+    let scale = desk.document().object(a).unwrap().placement.scale;
+    assert!(
+        scale.x > 1.2 && scale.x == scale.y && scale.y == scale.z,
+        "{scale}"
+    );
 }
 
 #[test]

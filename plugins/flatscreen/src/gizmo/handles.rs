@@ -1,7 +1,7 @@
 //! Where the handles are, which one is under the pointer, and what dragging one does. Pure.
 
 use bevy::gizmos::transform_gizmo::{
-    intersect_plane, point_to_ring_screen_dist, point_to_segment_dist, translation_plane_normal,
+    intersect_plane, point_to_segment_dist, translation_plane_normal,
 };
 use bevy::prelude::*;
 use midair_field::Placement;
@@ -94,7 +94,7 @@ impl Frame {
         for handle in Handle::AXES {
             let axis = self.axis(handle);
             let far = if mode == Mode::Turn {
-                point_to_ring_screen_dist(at, camera, eye, self.pivot, axis, self.length)
+                self.far_from_ring(axis, at, screen)
             } else {
                 let ends = [START, 1.1].map(|t| screen(self.pivot + axis * (t * self.length)));
                 let [Some(from), Some(to)] = ends else {
@@ -111,6 +111,19 @@ impl Frame {
             }
         }
         best.map(|(_, handle)| handle)
+    }
+
+    /// Pixels from a point of the screen to the ring about an axis. The engine's own measure passes over
+    /// the near and the far side of a ring that lies flat.
+    fn far_from_ring(&self, axis: Vec3, at: Vec2, screen: impl Fn(Vec3) -> Option<Vec2>) -> f32 {
+        let arm = axis.any_orthonormal_vector() * self.length;
+        let seen = |i: u32| {
+            let turn = Quat::from_axis_angle(axis, i as f32 * std::f32::consts::TAU / 48.0);
+            screen(self.pivot + turn * arm)
+        };
+        (0..48)
+            .filter_map(|i| Some(point_to_segment_dist(at, seen(i)?, seen(i + 1)?)))
+            .fold(f32::INFINITY, f32::min)
     }
 
     /// How far along a handle, or at which angle about it, a ray points.
