@@ -13,6 +13,7 @@ mod operands;
 mod oracle;
 mod pad_session;
 mod preview;
+mod sequence;
 mod shapes;
 mod studio;
 mod training;

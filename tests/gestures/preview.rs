@@ -55,6 +55,7 @@ fn sequence(s: &Studio, second: Placement) -> Recipe {
             ..at
         },
         recipe: s.object(id).recipe().unwrap().clone(),
+        muted: false,
     };
     Recipe::new(Node::Solid(vec![
         operand(a, Op::Union, s.placement(a)),

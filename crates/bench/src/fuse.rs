@@ -52,6 +52,7 @@ fn tori() -> Result<(Recipe, One), BenchError> {
             scale: Vec3::ONE,
         },
         recipe: mesh.clone(),
+        muted: false,
     });
     let recipe = Recipe::new(Node::Solid(operands.to_vec()));
     Ok((recipe, One(Arc::new(volume))))

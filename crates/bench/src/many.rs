@@ -21,6 +21,7 @@ pub(crate) fn recipe(count: usize) -> Result<Recipe, BenchError> {
                 scale: Vec3::splat(0.5),
             },
             recipe: part.clone(),
+            muted: false,
         }
     });
     Ok(Recipe::new(Node::Solid(operands.collect())))

@@ -113,6 +113,7 @@ fn operand(op: Op, at: Vec3, radius: f32) -> Operand {
         op,
         placement: Placement::at(at),
         recipe: Primitive::Sphere { radius }.into(),
+        muted: false,
     }
 }
 

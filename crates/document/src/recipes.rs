@@ -138,6 +138,8 @@ struct StoredOperand {
     #[serde(default)]
     placement: Placement,
     recipe: RecipeIndex,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    muted: bool,
 }
 
 impl RecipeTable {
@@ -159,6 +161,7 @@ impl RecipeTable {
                         op: o.op,
                         placement: o.placement,
                         recipe: self.enter(&o.recipe),
+                        muted: o.muted,
                     })
                     .collect(),
             ),
@@ -208,6 +211,7 @@ impl RecipeTable {
                                 op: o.op,
                                 placement: o.placement,
                                 recipe: part(o.recipe)?,
+                                muted: o.muted,
                             })
                         })
                         .collect::<Result<_, TableError>>()?,

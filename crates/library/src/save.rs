@@ -71,6 +71,7 @@ fn centred(recipe: &Recipe) -> Recipe {
         op: Op::Union,
         placement: Placement::at(-centre),
         recipe: recipe.clone(),
+        muted: false,
     }]))
 }
 

@@ -216,6 +216,7 @@ fn a_solid_is_saved_centred_and_found_again() {
         op: midair_field::Op::Union,
         placement: Placement::at(glam::Vec3::new(1.0, 2.0, 3.0)),
         recipe: ball.clone(),
+        muted: false,
     }]));
     let none = |_: &_| None;
     let a = save(&folders, "Übung", &moved, &none).unwrap();

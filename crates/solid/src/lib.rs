@@ -166,6 +166,7 @@ mod tests {
             op,
             placement: Placement::at([x, 0.0, 0.0].into()),
             recipe: ball.clone(),
+            muted: false,
         };
         Recipe::new(Node::Solid(vec![
             operand(Op::Union, 0.0),

@@ -9,6 +9,7 @@ pub mod evaluate;
 pub mod hands;
 pub mod notice;
 pub mod objects;
+pub mod operands;
 pub mod panel;
 pub mod pick;
 pub mod plane;
@@ -71,6 +72,7 @@ impl Plugin for StudioPlugin {
             command::plugin,
             project::plugin,
             objects::plugin,
+            operands::plugin,
             evaluate::plugin,
             pick::plugin,
             show::plugin,

@@ -60,6 +60,7 @@ pub(crate) fn drafted_recipe(document: &Document, drafts: &Drafts) -> Option<(Re
                 op: if i == 0 { Op::Union } else { op },
                 placement,
                 recipe: object.recipe()?.clone(),
+                muted: false,
             })
         })
         .collect::<Option<Vec<_>>>()?;

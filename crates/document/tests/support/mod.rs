@@ -48,6 +48,7 @@ pub fn fuse(parts: impl IntoIterator<Item = (Op, Placement, Recipe)>) -> Recipe 
         op,
         placement,
         recipe,
+        muted: false,
     };
     Recipe::new(Node::Solid(parts.into_iter().map(operand).collect()))
 }

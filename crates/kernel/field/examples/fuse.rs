@@ -49,6 +49,7 @@ fn operand(op: Op, placement: Placement, recipe: impl Into<Recipe>) -> Operand {
         op,
         placement,
         recipe: recipe.into(),
+        muted: false,
     }
 }
 

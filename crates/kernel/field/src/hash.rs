@@ -119,11 +119,15 @@ impl Writer {
                 for (i, o) in operands.iter().enumerate() {
                     // The first operand's operator is ignored, so it has no say in the name.
                     let op = if i == 0 { Op::Union } else { o.op };
-                    self.tag(match op {
-                        Op::Union => 0,
-                        Op::Intersect => 1,
-                        Op::Subtract => 2,
-                    });
+                    let heard = if o.muted { 16 } else { 0 };
+                    self.tag(
+                        heard
+                            + match op {
+                                Op::Union => 0,
+                                Op::Intersect => 1,
+                                Op::Subtract => 2,
+                            },
+                    );
                     self.placement(&o.placement);
                     self.0.update(&o.recipe.hash().0);
                 }

@@ -209,7 +209,7 @@ impl Compiler<'_> {
             Node::Component { recipe, .. } => self.emit(recipe, to_world),
             Node::Solid(operands) => {
                 let mut parts: Vec<(Op, Outline)> = Vec::with_capacity(operands.len());
-                for (i, operand) in operands.iter().enumerate() {
+                for (i, operand) in operands.iter().filter(|o| !o.muted).enumerate() {
                     let op = if i == 0 { Op::Union } else { operand.op };
                     let start = self.tape.len();
                     let part = self.emit(&operand.recipe, to_world * operand.placement.affine())?;

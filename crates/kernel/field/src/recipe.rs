@@ -26,13 +26,16 @@ pub enum Op {
 /// One member of a boolean sequence, held by value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Operand {
-    /// How it joins; the first operand's is ignored.
+    /// How it joins; that of the first that is not muted is ignored.
     pub op: Op,
     /// Where it stands in the solid's own frame.
     #[serde(default)]
     pub placement: Placement,
     /// What it is.
     pub recipe: Recipe,
+    /// It is kept but left out: the solid is the one without it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub muted: bool,
 }
 
 /// What a recipe is made of.
@@ -237,6 +240,7 @@ fn bounds_of(node: &Node) -> Aabb {
         Node::Solid(operands) => {
             let placed = operands
                 .iter()
+                .filter(|o| !o.muted)
                 .map(|o| (o.op, transformed(&o.recipe.bounds(), &o.placement.affine())));
             restricted(placed)
         }

@@ -157,6 +157,7 @@ fn handle(
             // Whose they are reads them.
             Command::Tool { .. }
             | Command::Objects(_)
+            | Command::Operand(_)
             | Command::Plane(_)
             | Command::Measure(_)
             | Command::World(_) => {}

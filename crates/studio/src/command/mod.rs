@@ -90,6 +90,8 @@ pub enum Command {
     Dismiss,
     /// Something done with objects: selected, grouped, hidden, copied, placed, coloured.
     Objects(crate::objects::Ask),
+    /// Something done with one operand of a sequence: joined otherwise, muted, moved, taken out.
+    Operand(crate::operands::OperandAsk),
     /// Changes one of the [`Settings`](crate::settings::Settings) by its dotted name.
     Set {
         /// For instance `look.room`.

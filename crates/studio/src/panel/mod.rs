@@ -12,6 +12,7 @@ mod leave;
 mod library;
 mod notices;
 mod objects;
+mod operands;
 mod outline;
 mod properties;
 mod registry;
@@ -70,6 +71,18 @@ pub(crate) fn plugin(app: &mut bevy::prelude::App) {
                 in_bar: true,
             },
             properties::Properties::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "operands",
+                title: "Operands",
+                icon: icon::UNITE_SQUARE,
+                dock: Dock::Right,
+                order: 12,
+                open: false,
+                in_bar: true,
+            },
+            operands::Operands::default(),
         )
         .add_panel(
             PanelInfo {

@@ -150,14 +150,39 @@ pub fn cast(
     })
 }
 
+/// The proxies go where their objects went. In a frame in which nothing moved nothing is looked at, and Rapier, whose
+/// step does no more here than bring its tree up to date, rests as well: a thousand things that stand still cost nothing.
 fn follow(
-    project: Res<Project>,
-    drafts: Res<Drafts>,
+    (project, drafts): (Res<Project>, Res<Drafts>),
     objects: Query<(&ObjectEntity, &Transform, &Visibility), Without<Proxy>>,
+    moved: Query<
+        (),
+        (
+            With<ObjectEntity>,
+            Or<(Changed<Transform>, Changed<Visibility>)>,
+        ),
+    >,
+    fresh: Query<(), Added<Proxy>>,
+    mut gone: RemovedComponents<Proxy>,
+    mut physics: Query<&mut RapierConfiguration>,
+    mut awake: Local<u8>,
     mut proxies: Query<(&Proxy, &mut Transform, Has<ColliderDisabled>, Entity)>,
     map: Res<crate::show::ObjectMap>,
     mut commands: Commands,
 ) {
+    let resources = project.is_changed() || drafts.is_changed();
+    let entities = !fresh.is_empty() || !moved.is_empty() || gone.read().count() > 0;
+    let changed = resources || entities;
+    // What is despawned here is noticed there in the frames after.
+    *awake = if changed { 3 } else { awake.saturating_sub(1) };
+    for mut rapier in &mut physics {
+        if rapier.physics_pipeline_active != (*awake > 0) {
+            rapier.physics_pipeline_active = *awake > 0;
+        }
+    }
+    if !changed {
+        return;
+    }
     for (proxy, mut transform, disabled, entity) in &mut proxies {
         let Some((_, shown, visibility)) = map.get(proxy.object).and_then(|e| objects.get(e).ok())
         else {

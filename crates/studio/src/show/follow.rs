@@ -13,7 +13,7 @@ use midair_mesh::{MeshHash, TriMesh};
 
 use super::{Drafts, transform};
 use crate::StudioSet;
-use crate::evaluate::{Deliver, Evaluations, Key, Made};
+use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made};
 use crate::pick::Proxy;
 use crate::project::Project;
 
@@ -135,8 +135,17 @@ fn show(
     mut meshes: ResMut<Assets<Mesh>>,
     mut objects: Query<(Entity, &ObjectEntity, &mut Showing, Option<&Children>)>,
     stand_ins: Query<(), With<StandIn>>,
+    delivered: Res<Delivered>,
+    mut awake: Local<u8>,
     mut commands: Commands,
 ) {
+    let busy = evaluations.progress().next().is_some() || !delivered.0.is_empty();
+    // What was given up on the way is asked for once more.
+    *awake = match *awake {
+        _ if busy || project.is_changed() => 3,
+        0 => return,
+        left => left - 1,
+    };
     let document = project.document();
     for (entity, id, mut showing, children) in &mut objects {
         let Some(object) = document.object(id.0) else {
@@ -242,7 +251,10 @@ fn stand_in(
     let Node::Solid(operands) = recipe.node() else {
         return;
     };
-    for operand in operands.iter().filter(|o| o.op == midair_field::Op::Union) {
+    for operand in operands
+        .iter()
+        .filter(|o| o.op == midair_field::Op::Union && !o.muted)
+    {
         let as_object = Object::solid("", operand.recipe.clone()).placed(operand.placement);
         let found = display_steps(document, &as_object, &operand.recipe)
             .into_iter()

@@ -134,7 +134,10 @@ impl Look {
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Looks>()
         // After the tools have said how things should look in this frame.
-        .add_systems(PostUpdate, paint);
+        .add_systems(
+            PostUpdate,
+            paint.run_if(resource_changed::<Cues>.or_else(resource_changed::<Project>)),
+        );
 }
 
 fn paint(

@@ -69,6 +69,7 @@ fn only_the_moved_part_is_done_again() {
             op: Op::Union,
             placement: Placement::at(Vec3::new(0.3 * i as f32, if i == 4 { y } else { 0.0 }, 0.0)),
             recipe: ball.clone(),
+            muted: false,
         };
         Recipe::new(crate::Node::Solid((0..20).map(part).collect()))
     };

@@ -142,6 +142,7 @@ pub(crate) fn solid(parts: &[(Op, &Recipe, Placement)]) -> Recipe {
         op: *op,
         placement: *placement,
         recipe: (*recipe).clone(),
+        muted: false,
     };
     Recipe::new(Node::Solid(parts.iter().map(operand).collect()))
 }

@@ -51,6 +51,7 @@ fn a_component_is_what_it_holds() {
     let component = Recipe::new(Node::Component {
         id: "ball".into(),
         recipe: ball(0.1),
+        muted: false,
     });
     assert_eq!(component.bounds(), ball(0.1).bounds());
     let program = Program::compile(&component, &HERE, 0.01, &()).expect("sound");
@@ -207,4 +208,48 @@ fn local_steps_are_shared() {
     assert_eq!(local_step(0.01, 1.3), 0.005);
     assert_eq!(local_step(0.0025, 1.0), 0.0025);
     assert!(local_step(1e-9, 1.0) >= 0.01 / 64.0);
+}
+
+#[test]
+fn a_muted_operand_leaves_the_solid_without_it() {
+    let operand = |op, x: f32, muted| Operand {
+        op,
+        placement: Placement::at(Vec3::new(x, 0.0, 0.0)),
+        recipe: ball(0.1),
+        muted,
+    };
+    let solid = |operands| Recipe::new(Node::Solid(operands));
+    let with = solid(vec![
+        operand(Op::Union, 3.0, true),
+        operand(Op::Subtract, 0.0, false),
+        operand(Op::Intersect, 5.0, true),
+        operand(Op::Union, 0.1, false),
+    ]);
+    // What is not muted first is what the others join, whatever its sign.
+    let without = solid(vec![
+        operand(Op::Union, 0.0, false),
+        operand(Op::Union, 0.1, false),
+    ]);
+    assert_eq!(with.bounds(), without.bounds());
+    assert_ne!(with.hash(), without.hash());
+    let (a, b) = (super::compile(&with), super::compile(&without));
+    for i in -20..20 {
+        let p = Vec3::new(0.013 * i as f32, 0.04, -0.02);
+        assert_eq!(a.at(p), b.at(p));
+    }
+    let none = solid(vec![operand(Op::Union, 0.0, true)]);
+    assert!(super::compile(&none).bounds().is_empty());
+}
+
+#[test]
+fn a_recipe_from_before_operands_could_be_muted_is_read_and_written_the_same() {
+    let one = Recipe::new(Node::Solid(vec![Operand {
+        op: Op::Union,
+        placement: Placement::IDENTITY,
+        recipe: ball(0.1),
+        muted: false,
+    }]));
+    let text = ron::to_string(&one).expect("writes");
+    assert!(!text.contains("muted"), "{text}");
+    assert_eq!(ron::from_str::<Recipe>(&text).expect("reads"), one);
 }
