@@ -159,6 +159,7 @@ fn follow(
         (),
         (
             With<ObjectEntity>,
+            Without<Proxy>,
             Or<(Changed<Transform>, Changed<Visibility>)>,
         ),
     >,
