@@ -22,17 +22,14 @@ impl Desk {
             self.strike_one(KeyCode::KeyL);
         }
         self.wait(3);
-        // The field that one searches with is the first wide thing of the library.
-        let library = self.focus().regions().iter().find(|r| r.name == "library");
-        let spots = &library.expect("the library").spots;
-        let field = spots
-            .iter()
-            .filter(|s| s.rect.width() > 120.0)
-            .min_by(|a, b| a.rect.top().total_cmp(&b.rect.top()))
-            .expect("a field")
-            .rect;
-        self.glide(Vec2::new(field.left() + 60.0, field.center().y));
-        self.click();
+        self.strike_one(KeyCode::F6);
+        for _ in 0..200 {
+            if self.focus().is_text() {
+                break;
+            }
+            self.strike_one(KeyCode::Tab);
+        }
+        assert!(self.focus().is_text(), "on the search field");
         self.strike(&[
             (KeyCode::ControlLeft, Key::Control),
             (KeyCode::KeyA, Key::Character("a".into())),
@@ -40,12 +37,6 @@ impl Desk {
         for letter in name.to_lowercase().chars() {
             let key = Key::Character(letter.to_string().into());
             self.strike(&[(KeyCode::KeyX, key)]);
-        }
-        for _ in 0..6 {
-            self.strike_one(KeyCode::F6);
-            if self.focus().region().is_some_and(|r| r.name == "library") {
-                break;
-            }
         }
         for _ in 0..24 {
             if self.focus().label().contains(name) {
