@@ -51,7 +51,6 @@ fn a_component_is_what_it_holds() {
     let component = Recipe::new(Node::Component {
         id: "ball".into(),
         recipe: ball(0.1),
-        muted: false,
     });
     assert_eq!(component.bounds(), ball(0.1).bounds());
     let program = Program::compile(&component, &HERE, 0.01, &()).expect("sound");
@@ -194,6 +193,7 @@ fn impossible_numbers_are_named() {
             ..HERE
         },
         recipe: ball(0.1),
+        muted: false,
     };
     let text = ron::to_string(&Node::Solid(vec![unsound])).expect("writes");
     let error = ron::from_str::<Recipe>(&text).expect_err("unsound");
