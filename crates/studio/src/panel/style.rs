@@ -139,7 +139,7 @@ pub fn visuals(room: RoomKind) -> Visuals {
     visuals.warn_fg_color = palette.warn;
     visuals.error_fg_color = palette.warn;
     visuals.hyperlink_color = if dark {
-        Color32::from_rgb(0xb3, 0xa4, 0xf4)
+        Color32::from_rgb(0xc2, 0xb7, 0xf8)
     } else {
         palette.accent_fill
     };
