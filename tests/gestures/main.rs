@@ -8,7 +8,6 @@ mod holding;
 mod keyboard;
 mod leaving;
 mod mouse;
-mod mouse_session;
 mod objects;
 mod operands;
 mod oracle;

@@ -55,8 +55,9 @@ impl Plugin for RecorderPlugin {
         .init_resource::<Arrivals>()
         .add_systems(
             PostStartup,
-            |settings: Res<Settings>, mut recorder: ResMut<Recorder>| {
-                recorder.settings = settings.shaping();
+            // An app without settings has none to write down.
+            |settings: Option<Res<Settings>>, mut recorder: ResMut<Recorder>| {
+                recorder.settings = settings.map_or_else(Vec::new, |s| s.shaping());
             },
         )
         .add_message::<Command>()

@@ -144,8 +144,10 @@ mod tests {
     fn every_key_is_reached_by_steps() {
         let mut seen = Vec::new();
         let mut keyboard = Keyboard::default();
-        for _ in 0..=ROWS.len() {
-            for _ in 0..COLUMNS {
+        for row in 0..=ROWS.len() {
+            // The last row has fewer keys: so many steps lead round it once.
+            let keys = ROWS.get(row).map_or(LAST.len(), |_| COLUMNS);
+            for _ in 0..keys {
                 seen.push(keyboard.key());
                 keyboard.step(1, 0);
             }

@@ -193,7 +193,9 @@ pub(crate) fn next(spots: &[Spot], from: Rect, along: Vec2) -> Option<Spot> {
         };
         // Between their edges, so that a small arrow leads to the broad rows under it.
         let aside = (one.min - other.max).max(other.min - one.max).max(0.0);
-        (2.0 * aside <= ahead).then_some(ahead + 3.0 * aside)
+        // In a row what lies straight ahead comes before anything above or below it.
+        let row = if upright { 0.0 } else { 1e4 };
+        (2.0 * aside <= ahead).then_some(ahead + 3.0 * aside + row)
     };
     spots
         .iter()
