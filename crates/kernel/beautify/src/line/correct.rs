@@ -5,7 +5,7 @@ use super::{Constraint, Line, LineOptions, Scaffold, candidates::candidates, exa
 pub struct Corrected {
     /// The line to show.
     pub line: Line,
-    /// The relations it stands in now, to [`exact::HOLDS`].
+    /// The relations it stands in now, to 1e-10 (metres, radians, a ratio).
     pub kept: Vec<Constraint>,
     /// Those it was near to and does not stand in.
     pub dropped: Vec<Constraint>,
