@@ -213,7 +213,8 @@ fn draw(
             .constrain_to(view)
             .pivot(egui::Align2::LEFT_BOTTOM)
             .fixed_pos(view.left_bottom() + egui::vec2(16.0, -16.0))
-            .vscroll(true)
+            // A window that scrolls keeps its height: only where there is no room for its own.
+            .vscroll(view.height() < 400.0)
             .max_height((view.height() - 64.0).max(32.0))
             .show(ctx, |ui| fill(ui, &info, world, panels, asks));
         if let Some(shown) = shown {

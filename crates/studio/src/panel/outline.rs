@@ -144,11 +144,16 @@ impl Outline {
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.switches(ui, document, node, &view, ask);
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    if !self.rename(ui, node, ask) {
-                        self.name(ui, document, selection, node, &view, ask);
-                    }
-                });
+                ui.with_layout(
+                    Layout::left_to_right(Align::Center)
+                        .with_main_align(Align::LEFT)
+                        .with_main_justify(true),
+                    |ui| {
+                        if !self.rename(ui, node, ask) {
+                            self.name(ui, document, selection, node, &view, ask);
+                        }
+                    },
+                );
             });
         });
     }
@@ -290,8 +295,7 @@ impl Outline {
         let text = if view.visible { text } else { text.weak() };
         let label = egui::Button::selectable(chosen, text)
             .truncate()
-            .sense(Sense::click_and_drag())
-            .min_size(egui::vec2(ui.available_width(), 0.0));
+            .sense(Sense::click_and_drag());
         let row = ui.add(label);
         self.drop_here(&row, document, node, ask);
         match node {
