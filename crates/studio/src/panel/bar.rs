@@ -132,16 +132,17 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
 
 fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
     let recent = &world.resource::<Settings>().files.recent;
-    let mut item = |ui: &mut Ui, sign: &str, text: &str, keys: &str, ask: Command| {
-        let button = egui::Button::new(format!("{sign}  {text}")).shortcut_text(keys);
-        if ui.add(button).clicked() {
-            asks.push(ask);
-            ui.close();
-        }
-    };
     ui.set_min_width(240.0);
-    item(ui, icon::FILE, "New", "Ctrl+N", Command::Leave(Then::New));
     item(
+        asks,
+        ui,
+        icon::FILE,
+        "New",
+        "Ctrl+N",
+        Command::Leave(Then::New),
+    );
+    item(
+        asks,
         ui,
         icon::FOLDER_OPEN,
         "Open…",
@@ -169,16 +170,10 @@ fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
             }
         },
     );
-    let mut item = |ui: &mut Ui, sign: &str, text: &str, keys: &str, ask: Command| {
-        let button = egui::Button::new(format!("{sign}  {text}")).shortcut_text(keys);
-        if ui.add(button).clicked() {
-            asks.push(ask);
-            ui.close();
-        }
-    };
     ui.separator();
-    item(ui, icon::FLOPPY_DISK, "Save", "Ctrl+S", Command::Save);
+    item(asks, ui, icon::FLOPPY_DISK, "Save", "Ctrl+S", Command::Save);
     item(
+        asks,
         ui,
         icon::FLOPPY_DISK_BACK,
         "Save as…",
@@ -190,8 +185,9 @@ fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         id: "export".into(),
         open: true,
     };
-    item(ui, icon::EXPORT, "Export a mesh…", "Ctrl+E", export);
+    item(asks, ui, icon::EXPORT, "Export a mesh…", "Ctrl+E", export);
     item(
+        asks,
         ui,
         icon::DOWNLOAD_SIMPLE,
         "Import meshes…",
@@ -199,7 +195,23 @@ fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         Command::Dialog(Dialog::Import),
     );
     ui.separator();
-    item(ui, icon::SIGN_OUT, "Quit", "", Command::Leave(Then::Quit));
+    item(
+        asks,
+        ui,
+        icon::SIGN_OUT,
+        "Quit",
+        "",
+        Command::Leave(Then::Quit),
+    );
+}
+
+/// A row of the menu, with the keys that do the same.
+fn item(asks: &mut Vec<Command>, ui: &mut Ui, sign: &str, text: &str, keys: &str, ask: Command) {
+    let button = egui::Button::new(format!("{sign}  {text}")).shortcut_text(keys);
+    if ui.add(button).clicked() {
+        asks.push(ask);
+        ui.close();
+    }
 }
 
 fn step(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>) {
