@@ -1,0 +1,1 @@
+//! The headset as a way in.
