@@ -5,7 +5,7 @@ use midair_document::{Document, Kind, MeshStore, Object, ObjectId};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{Format, Named, TriMesh, Unit, WriteError, WriteOptions, write};
 
-use crate::{Solid, SolidError};
+use crate::{Solid, SolidError, finish};
 
 /// What to write.
 #[derive(Clone, Debug, Default)]
@@ -83,7 +83,7 @@ pub fn export(
         };
         if wanted {
             let mesh = object_mesh(file, object, store, volumes, step, cancel)?;
-            meshes.push(Named::new(object.name.clone(), mesh));
+            meshes.push(Named::new(object.name.clone(), mesh).finished(Some(finish(object))));
         }
     }
     meshes.retain(|m| !m.value.triangles.is_empty());
@@ -92,7 +92,7 @@ pub fn export(
     }
     let borrowed: Vec<_> = meshes
         .iter()
-        .map(|m| Named::new(m.name.clone(), &m.value))
+        .map(|m| Named::new(m.name.clone(), &m.value).finished(m.finish))
         .collect();
     write(file, &borrowed, &WriteOptions { unit: options.unit })?;
     Ok(meshes.iter().map(|m| m.value.triangles.len()).sum())

@@ -27,9 +27,11 @@ use midair_mesh::TriMesh;
 use midair_surface::{Cancelled, Surface};
 
 mod export;
+mod material;
 mod thumbnail;
 
 pub use export::{ExportError, ExportOptions, export};
+pub use material::{MATERIALS, MaterialInfo, PLAIN, finish};
 pub use thumbnail::Thumbnail;
 
 /// Why a recipe did not become a solid.

@@ -32,6 +32,7 @@
 
 mod bytes;
 mod check;
+mod finish;
 mod format;
 mod measure;
 mod normals;
@@ -46,6 +47,7 @@ mod write;
 
 pub use bytes::{BytesError, from_bytes, to_bytes};
 pub use check::{Report, check};
+pub use finish::Finish;
 pub use format::Format;
 pub use read::{Read, ReadError, ReadReason, read, read_as, read_bytes, read_bytes_as};
 pub use tri_mesh::{Aabb, MeshHash, TriMesh};

@@ -24,7 +24,10 @@ impl Tint {
     /// The colour, as the eye should see it.
     pub fn colour(self) -> Color {
         match self {
-            Self::Plain => Color::srgb_u8(0xc9, 0xc4, 0xbc),
+            Self::Plain => {
+                let [r, g, b] = midair_solid::PLAIN;
+                Color::srgb_u8(r, g, b)
+            }
             Self::Union => Color::srgb_u8(0x3d, 0x7d, 0xe0),
             Self::Intersect => Color::srgb_u8(0x3f, 0xae, 0x5a),
             Self::Subtract => Color::srgb_u8(0xee, 0x86, 0x2c),

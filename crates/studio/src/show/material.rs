@@ -1,5 +1,6 @@
 use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::Face};
 use midair_document::Object;
+use midair_solid::{MATERIALS, MaterialInfo};
 
 use super::{Cue, Cues, ObjectEntity, Tint};
 use crate::project::Project;
@@ -7,60 +8,6 @@ use crate::project::Project;
 /// One material per look, made when first needed.
 #[derive(Resource, Default)]
 struct Looks(HashMap<Look, Handle<StandardMaterial>>);
-
-/// A material a person can choose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaterialInfo {
-    /// Its name in documents, never changed.
-    pub id: &'static str,
-    /// What people read.
-    pub name: &'static str,
-    /// 0 as a mirror, 1 as chalk.
-    pub roughness: f32,
-    /// 0 or 1.
-    pub metallic: f32,
-    /// How much of it one sees through.
-    pub clear: f32,
-}
-
-/// The materials for judging form; the first is every object's that has none of its own.
-pub const MATERIALS: &[MaterialInfo] = &[
-    MaterialInfo {
-        id: "matte",
-        name: "Matte",
-        roughness: 0.62,
-        metallic: 0.0,
-        clear: 0.0,
-    },
-    MaterialInfo {
-        id: "clay",
-        name: "Clay",
-        roughness: 0.95,
-        metallic: 0.0,
-        clear: 0.0,
-    },
-    MaterialInfo {
-        id: "gloss",
-        name: "Gloss",
-        roughness: 0.18,
-        metallic: 0.0,
-        clear: 0.0,
-    },
-    MaterialInfo {
-        id: "metal",
-        name: "Metal",
-        roughness: 0.32,
-        metallic: 1.0,
-        clear: 0.0,
-    },
-    MaterialInfo {
-        id: "glass",
-        name: "Glass",
-        roughness: 0.08,
-        metallic: 0.0,
-        clear: 0.65,
-    },
-];
 
 /// What decides how a thing looks; things that look alike share one material.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -78,15 +25,13 @@ struct Look {
 
 impl Look {
     fn of(object: &Object, cue: &Cue) -> Self {
-        let named = |m: &MaterialInfo| Some(m.id) == object.material.as_deref();
         Self {
             tint: cue.tint,
             touched: cue.touched,
             selected: cue.selected,
             ghost: cue.ghost,
             own: object.colour.map(|c| c.0),
-            // A material of a plugin that is missing is shown as matte, and kept.
-            material: MATERIALS.iter().position(named).unwrap_or(0),
+            material: MaterialInfo::index_of(object),
             mirrored: object.placement.scale.to_array().iter().product::<f32>() < 0.0,
         }
     }

@@ -16,7 +16,7 @@ use midair_field::Placement;
 pub use cue::{Cue, Cues, Tint};
 pub(crate) use follow::display_steps;
 pub use follow::{Drawn, ObjectEntity, ObjectMap, to_bevy_mesh};
-pub use material::{MATERIALS, MaterialInfo};
+pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, is_software};
 

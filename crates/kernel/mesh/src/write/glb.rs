@@ -5,15 +5,18 @@ use glam::Vec3;
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::{Target, View};
+use gltf::json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::scene::{Node, Scene};
 use gltf::json::validation::Checked::Valid;
 use gltf::json::validation::USize64;
-use gltf::json::{Accessor, Asset, Buffer, Index, Mesh, Root};
+use gltf::json::{Accessor, Asset, Buffer, Index, Material, Mesh, Root};
+
+use crate::Finish;
 
 use super::{Part, WriteReason};
 
-/// A GLB with one node per mesh, with normals where a mesh has them.
+/// A GLB with one node per mesh, with normals where a mesh has them, and one material per look.
 pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
     let mut root = Root {
         asset: Asset {
@@ -33,6 +36,7 @@ pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
         root,
         buffer,
         bytes: Vec::new(),
+        finishes: Vec::new(),
     };
     let mut nodes = Vec::new();
     for part in parts {
@@ -50,6 +54,7 @@ pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
             ComponentType::U32,
             Target::ElementArrayBuffer,
         );
+        let material = part.finish.map(|finish| data.material(finish));
         let mesh = data.root.push(Mesh {
             extensions: None,
             extras: Default::default(),
@@ -59,7 +64,7 @@ pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
                 extensions: None,
                 extras: Default::default(),
                 indices: Some(indices),
-                material: None,
+                material,
                 mode: Valid(Mode::Triangles),
                 targets: None,
             }],
@@ -102,9 +107,32 @@ struct Data {
     root: Root,
     buffer: Index<Buffer>,
     bytes: Vec<u8>,
+    /// The looks written so far; each stands at the place of its material.
+    finishes: Vec<Finish>,
 }
 
 impl Data {
+    fn material(&mut self, finish: Finish) -> Index<Material> {
+        if let Some(at) = self.finishes.iter().position(|f| *f == finish) {
+            return Index::new(at as u32);
+        }
+        self.finishes.push(finish);
+        self.root.push(Material {
+            alpha_mode: Valid(if finish.opacity < 1.0 {
+                AlphaMode::Blend
+            } else {
+                AlphaMode::Opaque
+            }),
+            pbr_metallic_roughness: PbrMetallicRoughness {
+                base_color_factor: PbrBaseColorFactor(finish.linear()),
+                metallic_factor: StrengthFactor(finish.metallic),
+                roughness_factor: StrengthFactor(finish.roughness),
+                ..PbrMetallicRoughness::default()
+            },
+            ..Material::default()
+        })
+    }
+
     /// Adds vectors; positions must state their box.
     fn vectors(&mut self, vectors: &[Vec3], with_box: bool) -> Index<Accessor> {
         let index = self.add(

@@ -11,7 +11,7 @@ use glam::Vec3;
 use thiserror::Error;
 
 use crate::rescale::rescaled;
-use crate::{Format, TriMesh, Unit};
+use crate::{Finish, Format, TriMesh, Unit};
 
 /// Something with a name: in a file, the name of an object.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct Named<T> {
     pub name: String,
     /// The thing itself.
     pub value: T,
+    /// How it looks, where that is known; GLB keeps it.
+    pub finish: Option<Finish>,
 }
 
 impl<T> Named<T> {
@@ -28,7 +30,14 @@ impl<T> Named<T> {
         Self {
             name: name.into(),
             value,
+            finish: None,
         }
+    }
+
+    /// The same, looking like this.
+    #[must_use]
+    pub fn finished(self, finish: Option<Finish>) -> Self {
+        Self { finish, ..self }
     }
 }
 
@@ -159,6 +168,7 @@ pub fn encode(
 struct Part<'a> {
     name: &'a str,
     mesh: &'a TriMesh,
+    finish: Option<Finish>,
     /// Positions in the file's unit.
     positions: Vec<Vec3>,
 }
@@ -177,6 +187,7 @@ impl<'a> Part<'a> {
         Ok(Self {
             name: &named.name,
             mesh,
+            finish: named.finish,
             positions,
         })
     }

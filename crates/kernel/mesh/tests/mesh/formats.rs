@@ -2,7 +2,7 @@ use std::io::{Cursor, Read as _};
 
 use glam::Vec3;
 use midair_mesh::{
-    Format, Named, TriMesh, Unit, WriteOptions, check, encode, read, read_as, read_bytes,
+    Finish, Format, Named, TriMesh, Unit, WriteOptions, check, encode, read, read_as, read_bytes,
     read_bytes_as, write,
 };
 
@@ -144,6 +144,38 @@ fn several_objects_stay_several_where_the_format_can() {
         .map(|node| node.name().unwrap().to_owned())
         .collect();
     assert_eq!(names, ["left & <right>", "b\nc"]);
+}
+
+#[test]
+fn looks_travel_in_glb_one_material_for_all_that_look_alike() {
+    let mesh = cube();
+    let red = Finish {
+        colour: [255, 0, 128],
+        opacity: 0.5,
+        roughness: 0.25,
+        metallic: 1.0,
+    };
+    let parts = [
+        Named::new("a", &mesh).finished(Some(red)),
+        Named::new("b", &mesh),
+        Named::new("c", &mesh).finished(Some(red)),
+    ];
+    let file = encode(Format::Glb, &parts, &WriteOptions::default()).unwrap();
+    let file = gltf::Gltf::from_slice(&file).unwrap();
+    assert_eq!(file.materials().count(), 1);
+    let of = |i: usize| {
+        let mesh = file.meshes().nth(i).unwrap();
+        mesh.primitives().next().unwrap().material().index()
+    };
+    assert_eq!([of(0), of(1), of(2)], [Some(0), None, Some(0)]);
+    let material = file.materials().next().unwrap();
+    assert_eq!(material.alpha_mode(), gltf::material::AlphaMode::Blend);
+    let pbr = material.pbr_metallic_roughness();
+    assert_eq!((pbr.roughness_factor(), pbr.metallic_factor()), (0.25, 1.0));
+    let [r, g, b, a] = pbr.base_color_factor();
+    assert_eq!([r, g, a], [1.0, 0.0, 0.5]);
+    // 128 of 255 in sRGB is 21.6 % of the light.
+    assert!((b - 0.2159).abs() < 1e-4, "{b}");
 }
 
 #[test]
