@@ -1,10 +1,15 @@
 //! Carries commands out.
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 use midair_document::{Edit, Object};
 use midair_field::Placement;
 
-use super::{Command, Dialogs, errand::Errand, errand::Errands};
+use super::{
+    Command, Dialogs,
+    errand::{Errand, Errands, Import},
+};
 use crate::StudioSet;
 use crate::hands::{Action, Hands, Side};
 use crate::notice::Notices;
@@ -13,6 +18,9 @@ use crate::project::{Places, Project, Selection, Shelf};
 use crate::settings::Settings;
 use crate::show::Drafts;
 use crate::tools::Tools;
+
+/// The most files that come into the scene when they are dropped on it together.
+const MOST_PLACED: usize = 4;
 
 pub(super) fn plugin(app: &mut App) {
     // Buttons become commands before commands are carried out, in the same frame.
@@ -89,7 +97,7 @@ fn handle(
                     if next != settings.shelf {
                         settings.shelf = next;
                     }
-                    errands.place(object, &mut project, &places, &mut notices);
+                    errands.place(object, &mut project, &mut notices);
                 }
             }
             Command::Mode(id) => {
@@ -109,10 +117,10 @@ fn handle(
                 let path = project
                     .path()
                     .map_or_else(|| project.new_path(), Into::into);
-                errands.start(Errand::Save(path), &project, &places);
+                errands.start(Errand::Save(path), &project);
             }
             Command::SaveAs(path) => {
-                errands.start(Errand::Save(path.clone()), &project, &places);
+                errands.start(Errand::Save(path.clone()), &project);
             }
             Command::Export {
                 path,
@@ -127,7 +135,6 @@ fn handle(
                     only: *only,
                 },
                 &project,
-                &places,
             ),
             Command::ExportObject { object, path } => errands.start(
                 Errand::Export {
@@ -137,23 +144,34 @@ fn handle(
                     only: Some(*object),
                 },
                 &project,
-                &places,
             ),
             Command::Import(paths) => {
-                for path in paths {
-                    errands.start(Errand::Import(path.clone()), &project, &places);
-                }
+                let import = |path: &PathBuf| Import {
+                    path: path.clone(),
+                    at: None,
+                };
+                errands.import(paths.iter().map(import), &places);
+            }
+            Command::Bring { paths, at } => {
+                // What was dropped by the handful is meant for the library.
+                let at = (paths.len() <= MOST_PLACED && at.is_finite()).then_some(*at);
+                let import = |path: &PathBuf| Import {
+                    path: path.clone(),
+                    at,
+                };
+                errands.import(paths.iter().map(import), &places);
             }
             Command::Open(path) => {
-                errands.start(Errand::Open(path.clone()), &project, &places);
+                errands.start(Errand::Open(path.clone()), &project);
             }
             Command::Dialog(dialog) => dialogs.ask(*dialog),
             // Leaving is the project's.
             Command::Leave(_) | Command::Answer(_) => {}
-            Command::CancelErrands => errands.cancel(),
-            Command::New => errands.start(Errand::New, &project, &places),
-            Command::Restore => errands.start(Errand::Restore, &project, &places),
-            Command::Dismiss => errands.start(Errand::Dismiss, &project, &places),
+            Command::CancelErrands => errands.cancel(None),
+            Command::CancelErrand(id) => errands.cancel(Some(*id)),
+            Command::New => errands.start(Errand::New, &project),
+            Command::Restore => errands.start(Errand::Restore, &project),
+            Command::Dismiss => errands.start(Errand::Dismiss, &project),
             // Whose they are reads them.
             Command::Tool { .. }
             | Command::Objects(_)

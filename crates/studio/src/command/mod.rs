@@ -14,7 +14,7 @@ use midair_document::{Edit, ObjectId};
 use midair_mesh::Unit;
 use serde::{Deserialize, Serialize};
 
-pub use errand::Errands;
+pub use errand::{Errands, Row};
 
 use crate::{
     hands::Side,
@@ -76,8 +76,17 @@ pub enum Command {
     },
     /// Brings meshes into the user's library.
     Import(Vec<PathBuf>),
+    /// Brings meshes into the user's library and, where they are few, into the scene as well.
+    Bring {
+        /// The files.
+        paths: Vec<PathBuf>,
+        /// Where the first is to stand on its foot, in metres; the others stand beside it.
+        at: Vec3,
+    },
     /// Gives up the files that are being read or written.
     CancelErrands,
+    /// Gives up one of them, by its number on the screen.
+    CancelErrand(u64),
     /// Leaves the work at hand for something else; asks first where it is not saved.
     Leave(Then),
     /// The answer to that question.

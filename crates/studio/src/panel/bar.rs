@@ -110,15 +110,23 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             }
         });
     }
-    for (what, fraction) in errands.progress() {
+    for row in errands.rows() {
         ui.horizontal(|ui| {
-            ui.add(
-                egui::ProgressBar::new(fraction)
-                    .text(what)
-                    .desired_width(320.0),
-            );
+            match row.fraction {
+                Some(fraction) => {
+                    ui.add(
+                        egui::ProgressBar::new(fraction)
+                            .text(row.what)
+                            .desired_width(320.0),
+                    );
+                }
+                None => {
+                    ui.spinner();
+                    ui.label(row.what);
+                }
+            }
             if ui.button("Cancel").clicked() {
-                asks.push(Command::CancelErrands);
+                asks.push(Command::CancelErrand(row.id));
             }
         });
     }
