@@ -11,7 +11,7 @@ use bevy::input::keyboard::{Key, KeyboardInput, NativeKey};
 use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
-use bevy::window::{PrimaryWindow, WindowResized};
+use bevy::window::{PrimaryWindow, WindowEvent, WindowResized};
 use midair::{Stage, app};
 use midair_document::{Document, ObjectId};
 use midair_flatscreen::focus::Focus;
@@ -274,11 +274,14 @@ impl Desk {
         let mut shown = world.get_mut::<Window>(window).unwrap();
         let before = shown.cursor_position();
         shown.set_cursor_position(Some(to));
-        world.write_message(CursorMoved {
+        let moved = CursorMoved {
             window,
             position: to,
             delta: before.map(|b| to - b),
-        });
+        };
+        // Panels read the window's own stream of events.
+        world.write_message(WindowEvent::CursorMoved(moved.clone()));
+        world.write_message(moved);
     }
 
     /// The pointer is nowhere, or at no place that is one.
@@ -288,11 +291,13 @@ impl Desk {
         let mut shown = world.get_mut::<Window>(window).unwrap();
         shown.set_cursor_position(to);
         if let Some(position) = to {
-            world.write_message(CursorMoved {
+            let moved = CursorMoved {
                 window,
                 position,
                 delta: Some(position),
-            });
+            };
+            world.write_message(WindowEvent::CursorMoved(moved.clone()));
+            world.write_message(moved);
         }
     }
 
@@ -311,7 +316,7 @@ impl Desk {
 
     pub fn mouse(&mut self, button: MouseButton, down: bool) {
         let window = self.window;
-        self.app.world_mut().write_message(MouseButtonInput {
+        let input = MouseButtonInput {
             button,
             state: if down {
                 ButtonState::Pressed
@@ -319,7 +324,10 @@ impl Desk {
                 ButtonState::Released
             },
             window,
-        });
+        };
+        let world = self.app.world_mut();
+        world.write_message(WindowEvent::MouseButtonInput(input));
+        world.write_message(input);
     }
 
     /// Where a point of the world is seen, in metres right and up of the middle and in front of the eye.

@@ -2,12 +2,14 @@
 //! against an exact boolean.
 
 mod desk;
+mod dropping;
 mod fuzz;
 mod gamepad;
 mod holding;
 mod keyboard;
 mod leaving;
 mod mouse;
+mod mouse_session;
 mod objects;
 mod operands;
 mod oracle;

@@ -129,6 +129,10 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
     });
     for ask in asks {
         match ask {
+            // Let go over the view: it stands where the pointer is.
+            Command::Place { component, .. } if let Some(at) = dropped_at(&ctx, world) => {
+                world.resource_mut::<Pointer>().put(component, at);
+            }
             // At the pointer is the panel itself: it is put where one looks, in the next frame.
             Command::Place { component, .. } => {
                 if world.resource::<Pad>().leads() {
@@ -144,6 +148,17 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
             }
         }
     }
+}
+
+/// Where in the window a drag ended in this frame, if it ended over the view.
+fn dropped_at(ctx: &egui::Context, world: &World) -> Option<Vec2> {
+    let screen = world.resource::<Screen>();
+    let released = ctx.input(|i| i.pointer.any_released());
+    let at = ctx
+        .input(|i| i.pointer.interact_pos())
+        .filter(|_| released)?;
+    let at = screen.view()?.contains(at).then_some(at)?;
+    Some(Vec2::new(at.x, at.y) * screen.scale)
 }
 
 fn draw(
@@ -367,21 +382,37 @@ pub(crate) fn title(project: Res<Project>, mut windows: Query<&mut Window>) {
     }
 }
 
-/// Files that are dropped on the window: documents are opened, anything else is brought in.
+/// Files that are dropped on the window: documents are opened, anything else is brought into the
+/// library, and into the scene where it was dropped on the view.
 pub(crate) fn drop(
     mut dropped: MessageReader<FileDragAndDrop>,
+    screen: Res<Screen>,
+    pointer: Res<Pointer>,
+    windows: Query<&Window>,
     mut commands: MessageWriter<Command>,
 ) {
+    let mut meshes = Vec::new();
     for file in dropped.read() {
         if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
-            let document = path_buf.extension().is_some_and(|e| e == "midair");
-            commands.write(if document {
-                Command::Leave(Then::Open(path_buf.clone()))
+            if path_buf.extension().is_some_and(|e| e == "midair") {
+                commands.write(Command::Leave(Then::Open(path_buf.clone())));
             } else {
-                Command::Import(vec![path_buf.clone()])
-            });
+                meshes.push(path_buf.clone());
+            }
         }
     }
+    if meshes.is_empty() {
+        return;
+    }
+    let cursor = windows.iter().find_map(Window::cursor_position);
+    commands.write(if screen.covers(cursor) {
+        Command::Import(meshes)
+    } else {
+        Command::Bring {
+            paths: meshes,
+            at: pointer.pose(pointer.leading).position,
+        }
+    });
 }
 
 /// The window's own button asks like any other way to leave.

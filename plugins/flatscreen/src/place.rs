@@ -65,6 +65,16 @@ pub(crate) fn free_spot(
         .unwrap_or(middle)
 }
 
+/// Where a thing from `low` to `high` about its origin rests on a face, its box touching it at `point`.
+pub(crate) fn against((low, high): Corners, point: Vec3, normal: Vec3) -> Vec3 {
+    let upright = normal.y > 0.7;
+    // On something that faces up it stands on its foot, centred; else its side lies against the face.
+    let normal = if upright { Vec3::Y } else { normal };
+    let middle = 0.5 * (low + high);
+    let reach = (0.5 * (high - low)).dot(normal.abs());
+    point + normal * reach - middle
+}
+
 /// The level axis of the world that is nearest to a direction.
 fn axis(direction: Vec3) -> Vec3 {
     if direction.x.abs() >= direction.z.abs() {
@@ -80,4 +90,18 @@ fn taken(project: &Project) -> Vec<Corners> {
     objects
         .filter_map(|(_, object)| Some(box_of(&object.placement, own_box(project, object)?)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_let_go_over_a_face_rests_on_it() {
+        let corners = (Vec3::new(-0.1, 0.0, -0.1), Vec3::new(0.1, 0.4, 0.1));
+        let on_top = against(corners, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.1, 0.99, 0.0));
+        assert!(on_top.distance(Vec3::new(1.0, 0.5, 0.0)) < 1e-6, "{on_top}");
+        let beside = against(corners, Vec3::ZERO, Vec3::X);
+        assert!((beside.x - 0.1).abs() < 1e-6, "{beside}");
+    }
 }

@@ -47,8 +47,8 @@ pub struct Pointer {
     pub(crate) stretching: bool,
     /// Enter ended something and is not to finish as well until it is up again.
     pub(crate) enter_spent: bool,
-    /// Components that were picked and not placed yet.
-    picked: Vec<String>,
+    /// Components that were picked and not placed yet, and where in the window they were let go.
+    picked: Vec<(String, Option<Vec2>)>,
 }
 
 /// What the leading hand drags.
@@ -98,7 +98,12 @@ impl Pointer {
 
     /// A component was picked from the library: it goes where one looks.
     pub fn pick(&mut self, component: String) {
-        self.picked.push(component);
+        self.picked.push((component, None));
+    }
+
+    /// A component was dragged from the library to a place in the window.
+    pub(crate) fn put(&mut self, component: String, at: Vec2) {
+        self.picked.push((component, Some(at)));
     }
 
     /// Where a hand is.
@@ -267,14 +272,25 @@ pub(crate) fn point(
     }
     // Where it was picked there is no room: it goes where one looks.
     if pointer.grip.is_none() && !pointer.picked.is_empty() {
-        let component = pointer.picked.remove(0);
+        let (component, at) = pointer.picked.remove(0);
         if let Some(found) = shelf.library.get(&component) {
-            let towards = ray_through(camera, eye, screen.centre());
+            let towards = ray_through(camera, eye, at.or(screen.centre()));
             let bounds = found.recipe.bounds();
             let corners = (bounds.min, bounds.max);
             if !bounds.is_empty() {
-                pointer.poses[side as usize] =
-                    Pose::at(place::free_spot(&project, &plane, corners, eye, towards));
+                let spot = if at.is_some() {
+                    let hit = context
+                        .single()
+                        .ok()
+                        .and_then(|c| pick::cast(&c, &proxies, towards.origin, towards.direction));
+                    let face = hit.map(|h| (h.point, h.normal));
+                    let (point, normal) =
+                        face.unwrap_or_else(|| (on_plane(&towards, eye, &plane), plane_up(&plane)));
+                    place::against(corners, point, normal)
+                } else {
+                    place::free_spot(&project, &plane, corners, eye, towards)
+                };
+                pointer.poses[side as usize] = Pose::at(spot);
             }
         }
         commands.write(Command::Place { component, side });
@@ -391,6 +407,15 @@ fn on_plane(ray: &Ray3d, eye: &Transform, plane: &WorkPlane) -> Vec3 {
     };
     let far = || ray.get_point(eye.translation.length().clamp(0.5, 10.0));
     plane.meet(ray, 30.0).unwrap_or_else(far)
+}
+
+/// Which way is up from the plane that things are put on.
+fn plane_up(plane: &WorkPlane) -> Vec3 {
+    if plane.shown {
+        *plane.normal()
+    } else {
+        Vec3::Y
+    }
 }
 
 #[cfg(test)]

@@ -38,6 +38,8 @@ pub(super) struct LibraryPanel {
     /// Which category is shown.
     category: Category,
     textures: HashMap<RecipeHash, TextureHandle>,
+    /// The rectangle the panel had in the last frame.
+    shown: Option<Rect>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,6 +55,7 @@ impl Panel for LibraryPanel {
     fn show(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         let shelf = world.resource::<Shelf>();
         let settings = world.resource::<Settings>();
+        self.shown = Some(ui.max_rect());
         ui.horizontal(|ui| {
             let search = egui::TextEdit::singleline(&mut self.query)
                 .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))
@@ -211,7 +214,7 @@ impl LibraryPanel {
         let sense = if component.missing {
             Sense::hover()
         } else {
-            Sense::click()
+            Sense::click_and_drag()
         };
         let (rect, response) = ui.allocate_exact_size(size, sense);
         response.widget_info(|| {
@@ -317,6 +320,7 @@ impl LibraryPanel {
                 side: Side::Right,
             });
         }
+        self.drag(&response, component, asks);
         let settings = world.resource::<Settings>();
         let response = if component.missing {
             response.on_hover_text("Its mesh is gone. Import it again.")
@@ -340,6 +344,50 @@ impl LibraryPanel {
                 ui.close();
             }
         });
+    }
+}
+
+/// Points of the picture that hangs at the pointer.
+const DRAGGED: f32 = 72.0;
+
+impl LibraryPanel {
+    /// A tile is dragged out: its picture goes with the pointer, and it is placed where it is let go.
+    fn drag(&self, response: &Response, component: &Component, asks: &mut Vec<Command>) {
+        let ctx = &response.ctx;
+        let Some(at) = ctx.pointer_interact_pos() else {
+            return;
+        };
+        // Let go over the panel it came from, it stays in the library.
+        let outside = !self.shown.is_some_and(|r| r.contains(at));
+        if response.drag_started() {
+            // A click leaves the search field; so does a drag, or keys would go on typing into it.
+            ctx.memory_mut(|m| m.stop_text_input());
+        }
+        if response.drag_stopped() && outside {
+            asks.push(Command::Place {
+                component: component.id.clone(),
+                side: Side::Right,
+            });
+        }
+        if !response.dragged() {
+            return;
+        }
+        ctx.set_cursor_icon(egui::CursorIcon::Grabbing);
+        let layer = egui::LayerId::new(egui::Order::Tooltip, egui::Id::new("dragged component"));
+        let painter = ctx.layer_painter(layer);
+        let place = Rect::from_center_size(at, Vec2::splat(DRAGGED));
+        let shade = if outside { 230 } else { 120 };
+        match self.textures.get(&component.recipe.hash()) {
+            Some(texture) => {
+                let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                let tint = Color32::from_white_alpha(shade);
+                painter.image(texture.id(), place, whole, tint);
+            }
+            None => {
+                let font = FontId::proportional(0.4 * DRAGGED);
+                painter.text(at, Align2::CENTER_CENTER, icon::CUBE, font, ACCENT);
+            }
+        }
     }
 }
 
