@@ -398,6 +398,19 @@ fn node_bytes(node: &Node) -> usize {
             contours.iter().map(|c| 24 + 8 * c.len()).sum()
         }
         Node::Primitive(Primitive::Convex { points }) => 12 * points.len(),
+        Node::Canvas(canvas) => canvas.strokes.iter().map(stroke_bytes).sum(),
         Node::Primitive(_) | Node::Mesh { .. } => 0,
     }
+}
+
+/// Points are shared with every other state of the canvas that has this stroke; they count once
+/// more here, which errs on the safe side.
+fn stroke_bytes(stroke: &midair_field::Stroke) -> usize {
+    use midair_field::Skeleton;
+    size_of::<midair_field::Stroke>()
+        + match &stroke.skeleton {
+            Skeleton::Points(points) => 16 * points.len(),
+            Skeleton::Polygon(corners) => 12 * corners.len(),
+            Skeleton::Line(..) | Skeleton::Volume(_) => 0,
+        }
 }

@@ -1,8 +1,8 @@
 use std::collections::{HashMap, HashSet};
 
 use midair_field::{
-    MAX_DEPTH, MAX_LEAVES, MAX_OPERANDS, Node, Op, Operand, Placement, Primitive, PrimitiveError,
-    Recipe, RecipeHash,
+    Canvas, CanvasError, MAX_DEPTH, MAX_LEAVES, MAX_OPERANDS, Node, Op, Operand, Placement,
+    Primitive, PrimitiveError, Recipe, RecipeHash, Skeleton, Stroke,
 };
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,7 @@ pub(crate) fn walk(
             }
         }
         Node::Component { recipe, .. } => walk(recipe, seen, visit),
+        Node::Canvas(canvas) => canvas.recipes().for_each(|r| walk(r, seen, visit)),
         Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } => {}
     }
     visit(recipe);
@@ -34,6 +35,9 @@ pub enum RecipeFault {
     /// A primitive with impossible numbers.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),
+    /// A painting with impossible numbers.
+    #[error(transparent)]
+    Canvas(#[from] CanvasError),
     /// An operand that stands nowhere.
     #[error("operand {0} stands nowhere: its placement is not finite, or a scale is zero")]
     Placement(usize),
@@ -84,6 +88,7 @@ fn check_node(node: &Node) -> Result<(), RecipeFault> {
             sound.then_some(()).ok_or(RecipeFault::Bounds)
         }
         Node::Component { .. } => Ok(()),
+        Node::Canvas(canvas) => Ok(canvas.validate()?),
         Node::Solid(operands) if operands.len() > MAX_OPERANDS => {
             Err(RecipeFault::Operands(operands.len() as u64))
         }
@@ -123,6 +128,13 @@ enum StoredNode {
     Component {
         id: String,
         recipe: RecipeIndex,
+    },
+    /// The strokes, and the recipe that each volume among them is, in their order; in the strokes
+    /// themselves an empty solid stands for it.
+    Canvas {
+        canvas: Canvas,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        volumes: Vec<RecipeIndex>,
     },
     Foreign {
         tool: String,
@@ -169,6 +181,20 @@ impl RecipeTable {
                 id: id.clone(),
                 recipe: self.enter(recipe),
             },
+            Node::Canvas(canvas) => {
+                let volumes: Vec<_> = canvas.recipes().map(|r| self.enter(r)).collect();
+                StoredNode::Canvas {
+                    canvas: if volumes.is_empty() {
+                        canvas.clone()
+                    } else {
+                        with_volumes(canvas, || {
+                            Ok::<_, TableError>(Recipe::new(Node::Solid(Vec::new())))
+                        })
+                        .unwrap_or_default()
+                    },
+                    volumes,
+                }
+            }
             Node::Foreign {
                 tool,
                 data,
@@ -220,6 +246,14 @@ impl RecipeTable {
                     id,
                     recipe: part(recipe)?,
                 },
+                StoredNode::Canvas { canvas, volumes } => {
+                    let mut volumes = volumes.into_iter();
+                    let mut next = || {
+                        let i = volumes.next().ok_or(TableError::Volumes(at))?;
+                        part(i)
+                    };
+                    Node::Canvas(with_volumes(&canvas, &mut next)?)
+                }
                 StoredNode::Foreign {
                     tool,
                     data,
@@ -240,6 +274,27 @@ impl RecipeTable {
     }
 }
 
+/// A canvas with other solids in the place of its volumes, one after the other.
+fn with_volumes<E>(
+    canvas: &Canvas,
+    mut next: impl FnMut() -> Result<Recipe, E>,
+) -> Result<Canvas, E> {
+    let one = |stroke: &Stroke| {
+        let skeleton = match &stroke.skeleton {
+            Skeleton::Volume(_) => Skeleton::Volume(next()?),
+            other => other.clone(),
+        };
+        Ok(Stroke {
+            skeleton,
+            ..stroke.clone()
+        })
+    };
+    Ok(Canvas {
+        strokes: canvas.strokes.iter().map(one).collect::<Result<_, E>>()?,
+        ..*canvas
+    })
+}
+
 /// Why a list of recipes cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
@@ -251,6 +306,9 @@ pub enum TableError {
         /// The place it names.
         part: u32,
     },
+    /// A painting with fewer solids than strokes that are one.
+    #[error("recipe {0} is a painting whose volumes are not all named")]
+    Volumes(usize),
     /// A recipe that is too large.
     #[error("recipe {at}: {fault}")]
     Fault {

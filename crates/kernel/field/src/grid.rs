@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::{IVec3, Vec3};
 use midair_mesh::Aabb;
 use rustc_hash::FxHashMap;
@@ -18,7 +20,7 @@ const CHUNK: i32 = 8;
 /// extracted from it can be closed whatever the values are.
 ///
 /// Bricks are kept in chunks of 8³; a chunk that lies wholly inside is one entry, so that the
-/// core of a large solid costs nothing.
+/// core of a large solid costs nothing. A copy shares them until it is changed.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     step: f32,
@@ -28,7 +30,8 @@ pub struct Grid {
 #[derive(Clone, Debug)]
 enum Chunk {
     Inside,
-    Mixed(Box<Mixed>),
+    /// Shared between copies of a grid until one of them changes it.
+    Mixed(Arc<Mixed>),
 }
 
 #[derive(Clone, Debug)]
@@ -47,7 +50,7 @@ pub enum Brick {
     /// 8³ values, x fastest: `values[x + 8·(y + 8·z)]`, with their extremes.
     Values {
         /// Signed distances in metres.
-        values: Box<[f32; BRICK * BRICK * BRICK]>,
+        values: Arc<[f32; BRICK * BRICK * BRICK]>,
         /// The smallest value.
         min: f32,
         /// The largest value.
@@ -119,14 +122,15 @@ impl Grid {
         let chunk = self
             .chunks
             .entry(at)
-            .or_insert_with(|| Chunk::Mixed(Box::new(Mixed::new(false))));
+            .or_insert_with(|| Chunk::Mixed(Arc::new(Mixed::new(false))));
         if let Chunk::Inside = chunk {
             if brick == Some(Brick::Inside) {
                 return;
             }
-            *chunk = Chunk::Mixed(Box::new(Mixed::new(true)));
+            *chunk = Chunk::Mixed(Arc::new(Mixed::new(true)));
         }
         if let Chunk::Mixed(m) = chunk {
+            let m = Arc::make_mut(m);
             let old = std::mem::replace(&mut m.slots[slot], brick);
             m.used += u32::from(m.slots[slot].is_some());
             m.used -= u32::from(old.is_some());
@@ -198,6 +202,7 @@ impl Grid {
         match self.chunks.get_mut(&at)? {
             Chunk::Inside => Some(Brick::Inside),
             Chunk::Mixed(m) => {
+                let m = Arc::make_mut(m);
                 let brick = m.slots[slot].take();
                 m.used -= u32::from(brick.is_some());
                 brick

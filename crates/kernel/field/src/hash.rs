@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use midair_mesh::Aabb;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Node, Op, Placement, Primitive};
+use crate::{Canvas, Node, Op, Placement, Primitive, Skeleton};
 
 /// The name of a recipe: BLAKE3 of its canonical bytes, written as 64 hexadecimal digits.
 ///
@@ -148,6 +148,41 @@ impl Writer {
                 self.text(data);
                 self.0.update(&mesh.0);
                 self.bounds(bounds);
+            }
+            Node::Canvas(canvas) => {
+                self.tag(6);
+                self.canvas(canvas);
+            }
+        }
+    }
+
+    fn canvas(&mut self, canvas: &Canvas) {
+        self.f32s(&[canvas.blend, canvas.reach]);
+        self.count(canvas.strokes.len());
+        for stroke in &canvas.strokes {
+            self.f32s(&[stroke.radius, stroke.weight]);
+            self.tag(u8::from(stroke.erase));
+            self.placement(&stroke.placement);
+            match &stroke.skeleton {
+                Skeleton::Points(points) => {
+                    self.tag(0);
+                    self.count(points.len());
+                    points.iter().for_each(|p| self.f32s(&p.to_array()));
+                }
+                Skeleton::Line(a, b) => {
+                    self.tag(1);
+                    self.vec3(*a);
+                    self.vec3(*b);
+                }
+                Skeleton::Polygon(corners) => {
+                    self.tag(2);
+                    self.count(corners.len());
+                    corners.iter().for_each(|&c| self.vec3(c));
+                }
+                Skeleton::Volume(recipe) => {
+                    self.tag(3);
+                    self.0.update(&recipe.hash().0);
+                }
             }
         }
     }

@@ -4,6 +4,7 @@ use glam::{Affine3A, IVec3, Vec3};
 use midair_mesh::Aabb;
 
 use crate::bake::Volume;
+use crate::canvas::{Block, Painting, Place};
 use crate::shape::{NODES, Points, Shape};
 
 /// A primitive or baked mesh in its place.
@@ -25,6 +26,7 @@ pub(crate) struct Leaf {
 pub(crate) enum Source {
     Shape(Arc<Shape>),
     Volume(Arc<Volume>),
+    Canvas(Arc<Painting>),
 }
 
 impl Leaf {
@@ -56,12 +58,25 @@ impl Leaf {
 
     /// φ at a point of the world.
     pub fn at(&self, p: Vec3) -> f32 {
+        let world = p;
         let p = self.to_local.transform_point3(p);
         self.scale
             * match &self.source {
                 Source::Shape(s) => s.at(p),
                 Source::Volume(v) => v.sample(p),
+                Source::Canvas(c) => c.at(p, world),
             }
+    }
+
+    fn block(&self, centre: Vec3, half: f32, around: f32) -> Block {
+        let c = self.to_local.transform_point3(centre);
+        Block {
+            within: Aabb::around(c, self.extent * half + self.reach * around),
+            centre: c,
+            radius: half * self.diagonal + around / self.scale,
+            world: centre,
+            half: half + around,
+        }
     }
 
     /// The greatest |∇φ| no further than `around` from a cube, where it is known; a baked mesh may
@@ -73,12 +88,13 @@ impl Leaf {
                 let c = self.to_local.transform_point3(centre);
                 v.steepest(&Aabb::around(c, self.extent * half + self.reach * around))
             }
+            Source::Canvas(p) => p.steepest(&self.block(centre, half, around)),
         }
     }
 
     /// Bounds of φ no further than `around` from the cube of half side `half` about `centre`, up to
     /// rounding.
-    pub fn range(&self, centre: Vec3, half: f32, around: f32) -> (f32, f32) {
+    pub fn range(&self, centre: Vec3, half: f32, around: f32, step: f32) -> (f32, f32) {
         let c = self.to_local.transform_point3(centre);
         let r = half * self.diagonal + around / self.scale;
         match &self.source {
@@ -90,6 +106,11 @@ impl Leaf {
             Source::Volume(v) => {
                 let local = Aabb::around(c, self.extent * half + self.reach * around);
                 let (lo, hi) = v.bound(&local, r);
+                (self.scale * lo, self.scale * hi)
+            }
+            Source::Canvas(p) => {
+                let block = self.block(centre, half, around);
+                let (lo, hi) = p.range(&block, step / self.scale);
                 (self.scale * lo, self.scale * hi)
             }
         }
@@ -114,7 +135,7 @@ impl Leaf {
                 let start = ax * (first.x as f32 * step) + row(0, 0);
                 v.sample_brick(start, [ax * step, ay * step, az * step], out);
             }
-            Source::Shape(shape) => {
+            Source::Shape(_) | Source::Canvas(_) => {
                 let xs: [f32; 8] = std::array::from_fn(|i| (first.x + i as i32) as f32 * step);
                 for i in 0..64 {
                     let r = row(i & 7, i >> 3);
@@ -128,7 +149,20 @@ impl Leaf {
                 let centre = (first.as_vec3() + 3.5) * step;
                 points.centre = self.to_local.transform_point3(centre);
                 points.radius = 3.5 * step * self.diagonal;
-                shape.brick(points, out);
+                match &self.source {
+                    Source::Shape(shape) => shape.brick(points, out),
+                    Source::Canvas(painting) => {
+                        let half = self.extent * (3.5 * step) * 1.000_01;
+                        let place = Place {
+                            within: Aabb::around(points.centre, half),
+                            points,
+                            first,
+                            local_step: step / self.scale,
+                        };
+                        painting.brick(&place, out);
+                    }
+                    Source::Volume(_) => {}
+                }
             }
         }
         if self.scale != 1.0 {

@@ -5,6 +5,7 @@
 //! that whole bricks can be skipped (EasyVRModeling §5, with `papers/errata.md`).
 
 pub mod bake;
+mod canvas;
 mod dirty;
 mod fuse;
 mod grid;
@@ -19,6 +20,9 @@ mod scratch;
 mod shape;
 mod stretch;
 
+pub use canvas::{
+    CANVAS_THRESHOLD, Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke,
+};
 pub use dirty::{changed_box, refuse};
 pub use fuse::{FuseError, FuseOptions, fuse};
 pub use grid::{BRICK, Brick, BrickCoord, Grid};

@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 use thiserror::Error;
 
 use crate::bake::Volume;
+use crate::canvas::{Bench, Canvas, Painting};
 use crate::leaf::{Leaf, Source};
 use crate::recipe::{restricted, transformed};
 use crate::shape::Shape;
@@ -207,6 +208,7 @@ impl Compiler<'_> {
                 self.mesh(recipe, mesh, to_world).map(Some)
             }
             Node::Component { recipe, .. } => self.emit(recipe, to_world),
+            Node::Canvas(canvas) => self.canvas(recipe, canvas, to_world),
             Node::Solid(operands) => {
                 let mut parts: Vec<(Op, Outline)> = Vec::with_capacity(operands.len());
                 for (i, operand) in operands.iter().filter(|o| !o.muted).enumerate() {
@@ -247,6 +249,37 @@ impl Compiler<'_> {
                 }))
             }
         }
+    }
+
+    fn canvas(
+        &mut self,
+        recipe: &Recipe,
+        canvas: &Canvas,
+        to_world: Affine3A,
+    ) -> Result<Option<Outline>, CompileError> {
+        let (painting, parts) = Painting::new(canvas, to_world, self)?;
+        let bounds = transformed(&painting.bounds(), &to_world);
+        if bounds.is_empty() {
+            return Ok(None);
+        }
+        let name = (recipe.hash().0, Vec3::ONE);
+        let source = Source::Canvas(Arc::new(painting));
+        let leaf = self.leaf(source, to_world, bounds, name)?;
+        // Each by itself, so that one stroke's change is told from another's.
+        let part = |p: crate::canvas::Part| {
+            let outline = Outline {
+                key: p.key,
+                bounds: transformed(&p.bounds, &to_world),
+                parts: Vec::new(),
+            };
+            (Op::Union, outline)
+        };
+        let parts: Vec<_> = parts.into_iter().map(part).collect();
+        Ok(Some(Outline {
+            key: key_of(&parts),
+            bounds: leaf.bounds,
+            parts,
+        }))
     }
 
     fn primitive(
@@ -321,6 +354,33 @@ impl Compiler<'_> {
             bounds,
             parts: Vec::new(),
         })
+    }
+}
+
+impl Bench for Compiler<'_> {
+    fn solid(
+        &mut self,
+        recipe: &Recipe,
+        to_world: Affine3A,
+    ) -> Result<Option<Program>, CompileError> {
+        let mut inner = Compiler {
+            leaves: Vec::new(),
+            tape: Vec::new(),
+            shapes: FxHashMap::default(),
+            step: self.step,
+            meshes: self.meshes,
+        };
+        let outline = inner.emit(recipe, to_world)?;
+        Ok(outline.map(|outline| Program {
+            leaves: inner.leaves,
+            tape: inner.tape,
+            outline: Some(outline),
+            step: self.step,
+        }))
+    }
+
+    fn smallest(&self, m: &Affine3A) -> f32 {
+        singular(&m.matrix3).0
     }
 }
 

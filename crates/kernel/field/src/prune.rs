@@ -39,7 +39,8 @@ impl Program {
         for &instr in tape {
             match instr {
                 Instr::Load(leaf) => {
-                    let (low, high) = self.leaves[leaf as usize].range(centre, half, self.around());
+                    let (low, high) =
+                        self.leaves[leaf as usize].range(centre, half, self.around(), self.step());
                     let range = Interval {
                         low: low - slack,
                         high: high + slack,

@@ -10,7 +10,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
-use crate::{Placement, Primitive, PrimitiveError, RecipeHash};
+use crate::{Canvas, CanvasError, Placement, Primitive, PrimitiveError, RecipeHash};
 
 /// How an operand joins what stands to its left (EasyVRModeling §5.3 Eq. 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -60,6 +60,8 @@ pub enum Node {
         /// What it is, by value: the shape survives a library that lost it.
         recipe: Recipe,
     },
+    /// Strokes that melt into one surface.
+    Canvas(Canvas),
     /// Made by a plugin that may be missing: evaluated through its baked mesh, its data untouched.
     Foreign {
         /// The tool that made it.
@@ -85,6 +87,9 @@ pub enum RecipeError {
     /// A primitive with impossible numbers.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),
+    /// A painting with impossible numbers.
+    #[error(transparent)]
+    Canvas(#[from] CanvasError),
     /// An operand that stands nowhere.
     #[error(
         "operand {0} has a placement that is not finite, not a unit rotation, or scaled by zero"
@@ -125,6 +130,11 @@ impl Recipe {
                 leaves = each.fold(0, u64::saturating_add);
             }
             Node::Component { recipe, .. } => (depth, leaves) = (recipe.depth(), recipe.leaves()),
+            Node::Canvas(canvas) => {
+                depth = canvas.recipes().map(Recipe::depth).max().unwrap_or(0);
+                let each = canvas.recipes().map(Recipe::leaves);
+                leaves = each.fold(1, u64::saturating_add);
+            }
             Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } => {}
         }
         Self(Arc::new(Inner {
@@ -205,6 +215,7 @@ impl Recipe {
                 match recipe.node() {
                     Node::Solid(operands) => rest.extend(operands.iter().map(|o| &o.recipe)),
                     Node::Component { recipe, .. } => rest.push(recipe),
+                    Node::Canvas(canvas) => rest.extend(canvas.recipes()),
                     _ => {}
                 }
             }
@@ -228,6 +239,7 @@ fn check(node: &Node) -> Result<(), RecipeError> {
             Some(i) => Err(RecipeError::Placement(i + 1)),
             None => Ok(()),
         },
+        Node::Canvas(canvas) => Ok(canvas.validate()?),
         Node::Component { .. } => Ok(()),
     }
 }
@@ -237,6 +249,7 @@ fn bounds_of(node: &Node) -> Aabb {
         Node::Primitive(p) => p.bounds(),
         Node::Mesh { bounds, .. } | Node::Foreign { bounds, .. } => *bounds,
         Node::Component { recipe, .. } => recipe.bounds(),
+        Node::Canvas(canvas) => canvas.bounds(),
         Node::Solid(operands) => {
             let placed = operands
                 .iter()

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::{Vec3, Vec4};
 
 use crate::program::Instr;
@@ -86,7 +88,7 @@ impl Program {
 
     fn leaf_range(&self, leaf: u32, coord: BrickCoord) -> (f32, f32) {
         let centre = (coord.as_vec3() * 8.0 + 3.5) * self.step();
-        self.leaves[leaf as usize].range(centre, 3.5 * self.step(), 0.0)
+        self.leaves[leaf as usize].range(centre, 3.5 * self.step(), 0.0, self.step())
     }
 
     /// φ of a union of leaves at the nodes of a brick, in `scratch.stack[0]`: as
@@ -148,6 +150,35 @@ impl Program {
         2.0 * self.step()
     }
 
+    /// φ at every node of a brick, as [`Program::at`].
+    pub(crate) fn values<'s>(
+        &self,
+        coord: BrickCoord,
+        scratch: &'s mut Scratch,
+    ) -> Option<&'s mut [f32; NODES]> {
+        self.brick_values(coord, &self.tape, self.rounding(), scratch)
+    }
+
+    /// Bounds of φ on a cube, and a little around it.
+    pub(crate) fn bounds_of(&self, centre: Vec3, half: f32) -> (f32, f32) {
+        let mut thin = Vec::new();
+        let range = self.prune(&self.tape, centre, half, self.rounding(), &mut thin);
+        (range.low, range.high)
+    }
+
+    /// The greatest |∇φ| on a cube and a little around it, if known.
+    pub(crate) fn steepest(&self, centre: Vec3, half: f32) -> Option<f32> {
+        self.leaves.iter().try_fold(1.0f32, |most, leaf| {
+            Some(most.max(leaf.slope(centre, half, self.around())?))
+        })
+    }
+
+    /// How far bounds may be off by rounding.
+    fn rounding(&self) -> f32 {
+        let b = self.bounds();
+        1.0e-3 * self.step() + 4.0e-6 * b.min.abs().max(b.max.abs()).max_element()
+    }
+
     /// The greatest |∇φ| on a brick and two steps around it, if known.
     fn slope(&self, coord: BrickCoord, tape: &[Instr]) -> Option<f32> {
         let centre = (coord.as_vec3() * 8.0 + 3.5) * self.step();
@@ -187,7 +218,7 @@ impl Program {
             return (max < 0.0).then_some(Brick::Inside);
         }
         Some(Brick::Values {
-            values: Box::new(*values),
+            values: Arc::new(*values),
             min,
             max,
         })

@@ -38,7 +38,11 @@ pub fn grid_from_fn(
             } else if max <= -band {
                 Brick::Inside
             } else {
-                Brick::Values { values, min, max }
+                Brick::Values {
+                    values: values.into(),
+                    min,
+                    max,
+                }
             };
             Some((IVec3::from(c.map(|c| c as i32)), brick))
         })

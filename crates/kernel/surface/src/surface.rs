@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::IVec3;
@@ -90,7 +91,8 @@ pub struct Surface {
 /// A chunk's pieces.
 #[derive(Clone)]
 pub(crate) struct Stored {
-    pieces: Box<[Option<Box<Piece>>; SLOTS]>,
+    /// Shared between copies of a surface.
+    pieces: Box<[Option<Arc<Piece>>; SLOTS]>,
     /// Vertices before each piece, then all of them.
     pub base: [u32; SLOTS + 1],
     /// Triangles of all pieces.
@@ -269,7 +271,7 @@ impl Surface {
             let mut low = IVec3::ONE;
             for (slot, piece) in pieces {
                 low = low.min(join(IVec3::ZERO, slot));
-                stored.pieces[slot] = piece;
+                stored.pieces[slot] = piece.map(Arc::from);
             }
             stored.count();
             // The meshes of the chunks before repeat the vertices of this one's first bricks.

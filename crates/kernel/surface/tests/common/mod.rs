@@ -40,7 +40,7 @@ pub fn values(f: impl FnMut(usize) -> f32) -> Brick {
     Brick::Values {
         min: values.iter().copied().fold(f32::INFINITY, f32::min),
         max: values.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-        values,
+        values: values.into(),
     }
 }
 

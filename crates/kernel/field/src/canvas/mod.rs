@@ -1,0 +1,14 @@
+//! A painting: strokes with skeletons that melt into one convolution surface (3DBrushVR §3–4).
+
+mod build;
+mod kernel;
+mod paint;
+mod stroke;
+
+pub(crate) use build::{Bench, Part};
+pub use kernel::T as CANVAS_THRESHOLD;
+pub(crate) use paint::{Block, Painting, Place};
+pub use stroke::{Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke};
+
+#[cfg(test)]
+mod tests;

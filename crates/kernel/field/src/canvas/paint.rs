@@ -1,0 +1,754 @@
+use glam::{Affine3A, IVec3, Vec2, Vec3};
+use midair_mesh::Aabb;
+
+use super::kernel::{Family, HALF_SPACE_SLOPE, T, half_space, power};
+use super::stroke::HARD;
+use crate::Program;
+use crate::scratch::Scratch;
+use crate::shape::{NODES, Points};
+
+/// Segments of a led point that are looked up together.
+pub(super) const CHUNK: usize = 8;
+/// Chunks that are looked up together.
+pub(super) const GROUP: usize = 32;
+/// Chunks in one block beyond which bounds are not worth their time.
+const MANY: usize = 200;
+/// Steps from the surface within which the distance to what is felt nowhere is told apart.
+const FAR: f32 = 3.0;
+
+/// A canvas made ready for evaluation, in its own frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Painting {
+    pub(super) family: Family,
+    pub(super) blend: f32,
+    pub(super) strokes: Vec<Inked>,
+    pub(super) segments: Vec<Segment>,
+    /// By stroke.
+    pub(super) chunks: Vec<Chunk>,
+    pub(super) groups: Vec<Aabb>,
+    /// The least of what strokes make of one unit of potential, metres.
+    pub(super) least: f32,
+}
+
+/// One stroke.
+#[derive(Clone, Debug)]
+pub(super) struct Inked {
+    pub kind: Inking,
+    pub weight: f32,
+    pub erase: bool,
+    /// Metres for one unit of potential at its surface; for a canvas, the factor on its own.
+    pub scale: f32,
+    /// A bound of |∇F|, per metre; for a field, metres of the world in one of the canvas.
+    pub slope: f32,
+    /// To its own frame, where that is not the canvas's.
+    pub to_local: Option<Affine3A>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Inking {
+    Points,
+    /// Start, unit direction, length, 1 / support.
+    Line(Vec3, Vec3, f32, f32),
+    Polygon(Box<Area>),
+    /// The solid, and how many metres of its φ the kernel's radius is.
+    Field(Box<Program>, f32),
+    Canvas(Box<Painting>),
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Area {
+    pub origin: Vec3,
+    pub axes: [Vec3; 3],
+    /// In supports.
+    pub corners: Vec<Vec2>,
+    pub inverse: f32,
+}
+
+/// A led point between two places: it moves by `along` while its radius goes from `radius` to
+/// `radius + wider`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    pub from: Vec3,
+    pub along: Vec3,
+    pub radius: f32,
+    pub wider: f32,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Chunk {
+    /// Where it is felt.
+    pub bounds: Aabb,
+    pub stroke: u32,
+    /// Its segments.
+    pub from: u32,
+    pub to: u32,
+}
+
+impl Segment {
+    /// The squared distance to it in its own radii: the least of |p − c(t)|² / r(t)² along the way.
+    #[inline(always)]
+    fn at(&self, x: f32, y: f32, z: f32) -> f32 {
+        let (b, r, w) = (self.along, self.radius, self.wider);
+        let (qx, qy, qz) = (x - self.from.x, y - self.from.y, z - self.from.z);
+        let qq = qx * qx + qy * qy + qz * qz;
+        let qb = qx * b.x + qy * b.y + qz * b.z;
+        let bb = b.x * b.x + b.y * b.y + b.z * b.z;
+        // Where the derivative is zero: linear in t.
+        let up = w * qq + r * qb;
+        let down = bb * r + w * qb;
+        let end = if up > 0.0 { 1.0 } else { 0.0 };
+        let t = if down > 1.0e-12 { up / down } else { end };
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
+        let (dx, dy, dz) = (qx - t * b.x, qy - t * b.y, qz - t * b.z);
+        let wide = r + t * w;
+        (dx * dx + dy * dy + dz * dz) / (wide * wide)
+    }
+
+    fn thinnest(&self) -> f32 {
+        self.radius.min(self.radius + self.wider)
+    }
+}
+
+/// The nodes of a brick, in the canvas's frame and on the lattice of the world.
+pub(crate) struct Place<'a> {
+    pub points: &'a Points,
+    /// Their box in the canvas's frame.
+    pub within: Aabb,
+    pub first: IVec3,
+    /// Steps of the world in metres of the canvas, at least.
+    pub local_step: f32,
+}
+
+/// A block of space, in the canvas's frame and in the world.
+pub(crate) struct Block {
+    pub within: Aabb,
+    pub centre: Vec3,
+    pub radius: f32,
+    pub world: Vec3,
+    pub half: f32,
+}
+
+/// Potential and inverse scale at the nodes of a brick.
+struct Layers {
+    /// Σ F of what was painted, and Σ F/scale.
+    felt: [f32; NODES],
+    fine: [f32; NODES],
+    /// The potential so far; its p-th power while strokes are painted.
+    all: [f32; NODES],
+    one: [f32; NODES],
+}
+
+impl Painting {
+    /// The chunks felt in a box, by stroke.
+    fn within(&self, b: &Aabb) -> Vec<u32> {
+        let mut found = Vec::new();
+        for (g, group) in self.groups.iter().enumerate() {
+            if !touch(group, b) {
+                continue;
+            }
+            let first = g * GROUP;
+            let last = (first + GROUP).min(self.chunks.len());
+            for i in first..last {
+                if touch(&self.chunks[i].bounds, b) {
+                    found.push(i as u32);
+                }
+            }
+        }
+        found
+    }
+
+    /// φ at the nodes of a brick, metres of the canvas: (T − F) at the scale of the strokes that
+    /// are felt there, so that |∇φ| is near 1 at the surface.
+    pub fn brick(&self, place: &Place, out: &mut [f32; NODES]) {
+        let mut layers = Box::new(Layers {
+            felt: [0.0; NODES],
+            fine: [0.0; NODES],
+            all: [0.0; NODES],
+            one: [0.0; NODES],
+        });
+        self.potential(place, &mut layers);
+        let reach = FAR * place.local_step;
+        let mut far = false;
+        for (i, o) in out.iter_mut().enumerate() {
+            let (felt, fine) = (layers.felt[i], layers.fine[i]);
+            let scale = if fine > 0.0 { felt / fine } else { 0.0 };
+            far |= fine <= 0.0;
+            *o = (T - layers.all[i]) * scale;
+        }
+        if !far {
+            return;
+        }
+        // Felt nowhere: no nearer than the nearest thing's own field ends.
+        let near = self.within(&place.within.grown(reach));
+        let mut least = [(FAR + 1.0) * place.local_step; NODES];
+        for &c in &near {
+            let chunk = &self.chunks[c as usize];
+            let stroke = &self.strokes[chunk.stroke as usize];
+            if stroke.erase {
+                continue;
+            }
+            let (low, high) = (chunk.bounds.min, chunk.bounds.max);
+            let rim = T * stroke.scale;
+            let p = place.points;
+            for (i, l) in least.iter_mut().enumerate() {
+                let x = (low.x - p.x[i]).max(p.x[i] - high.x).max(0.0);
+                let y = (low.y - p.y[i]).max(p.y[i] - high.y).max(0.0);
+                let z = (low.z - p.z[i]).max(p.z[i] - high.z).max(0.0);
+                *l = l.min((x * x + y * y + z * z).sqrt().max(rim));
+            }
+        }
+        for (i, o) in out.iter_mut().enumerate() {
+            if layers.fine[i] <= 0.0 {
+                *o = least[i];
+            }
+        }
+    }
+
+    fn potential(&self, place: &Place, layers: &mut Layers) {
+        let chunks = self.within(&place.within);
+        let mut rest = &chunks[..];
+        let mut raised = false;
+        while let Some(&first) = rest.first() {
+            let index = self.chunks[first as usize].stroke;
+            let n = rest
+                .iter()
+                .take_while(|c| self.chunks[**c as usize].stroke == index)
+                .count();
+            let (own, after) = rest.split_at(n);
+            rest = after;
+            let stroke = &self.strokes[index as usize];
+            // A volume's own scale changes from place to place, and it fills this in by itself.
+            let mut inner = None;
+            if !self.ink(stroke, own, place, layers, &mut inner) {
+                continue;
+            }
+            if stroke.erase {
+                self.lower(layers, &mut raised);
+                erase_from(&mut layers.all, &layers.one);
+                continue;
+            }
+            match &inner {
+                Some(fine) => join_inner(layers, fine, stroke),
+                None => join(layers, 1.0 / stroke.scale),
+            }
+            if self.blend >= HARD {
+                layers
+                    .all
+                    .iter_mut()
+                    .zip(&layers.one)
+                    .for_each(|(a, f)| *a = if *f > *a { *f } else { *a });
+            } else if self.blend == 1.0 {
+                layers
+                    .all
+                    .iter_mut()
+                    .zip(&layers.one)
+                    .for_each(|(a, f)| *a += *f);
+            } else {
+                if !raised {
+                    raise(&mut layers.all, self.blend);
+                    raised = true;
+                }
+                raise(&mut layers.one, self.blend);
+                layers
+                    .all
+                    .iter_mut()
+                    .zip(&layers.one)
+                    .for_each(|(a, f)| *a += *f);
+            }
+        }
+        self.lower(layers, &mut raised);
+    }
+
+    fn lower(&self, layers: &mut Layers, raised: &mut bool) {
+        if std::mem::take(raised) {
+            raise(&mut layers.all, 1.0 / self.blend);
+        }
+    }
+
+    /// The potential of one stroke, in `layers.one`; false where it is zero everywhere.
+    fn ink(
+        &self,
+        stroke: &Inked,
+        chunks: &[u32],
+        place: &Place,
+        layers: &mut Layers,
+        inner: &mut Option<Box<[f32; NODES]>>,
+    ) -> bool {
+        let moved = stroke.to_local.map(|m| Box::new(moved(place.points, &m)));
+        let points = moved.as_deref().unwrap_or(place.points);
+        let out = &mut layers.one;
+        match &stroke.kind {
+            Inking::Points => {
+                let widest = self.family.reach;
+                out.fill(widest * widest);
+                let mut any = false;
+                for &c in chunks {
+                    let chunk = &self.chunks[c as usize];
+                    for s in &self.segments[chunk.from as usize..chunk.to as usize] {
+                        let c = points.centre;
+                        let near = s.at(c.x, c.y, c.z).sqrt() - points.radius / s.thinnest();
+                        if near < widest * 1.0001 {
+                            any = true;
+                            nearest(s, points, out);
+                        }
+                    }
+                }
+                if any {
+                    profile(&self.family, stroke.weight, out);
+                }
+                any
+            }
+            Inking::Line(from, along, length, inverse) => {
+                line(
+                    &self.family,
+                    *from,
+                    *along,
+                    *length,
+                    *inverse,
+                    stroke.weight,
+                    points,
+                    out,
+                );
+                true
+            }
+            Inking::Polygon(area) => {
+                for (i, o) in out.iter_mut().enumerate() {
+                    let p = Vec3::new(points.x[i], points.y[i], points.z[i]);
+                    *o = stroke.weight * area.at(&self.family, p);
+                }
+                true
+            }
+            Inking::Field(program, radius) => {
+                let mut scratch = Scratch::default();
+                let coord = place.first >> 3;
+                match program.values(coord, &mut scratch) {
+                    None => return false,
+                    Some(values) => {
+                        let inverse = 1.0 / radius;
+                        for (o, v) in out.iter_mut().zip(values) {
+                            *o = stroke.weight * half_space(*v * inverse);
+                        }
+                    }
+                }
+                true
+            }
+            Inking::Canvas(painting) => {
+                let m = stroke.to_local.unwrap_or(Affine3A::IDENTITY);
+                let inside = Place {
+                    points,
+                    within: crate::recipe::transformed(&place.within, &m),
+                    ..*place
+                };
+                let mut own = Box::new(Layers {
+                    felt: [0.0; NODES],
+                    fine: [0.0; NODES],
+                    all: [0.0; NODES],
+                    one: [0.0; NODES],
+                });
+                painting.potential(&inside, &mut own);
+                for (o, a) in out.iter_mut().zip(&own.all) {
+                    *o = stroke.weight * a;
+                }
+                // Scale 1/s of the whole, as the nested strokes have it.
+                let mut fine = Box::new([0.0; NODES]);
+                for (i, f) in fine.iter_mut().enumerate() {
+                    *f = if own.felt[i] > 0.0 {
+                        own.fine[i] / own.felt[i]
+                    } else {
+                        0.0
+                    };
+                }
+                *inner = Some(fine);
+                true
+            }
+        }
+    }
+
+    /// F and its scale at one place.
+    fn point(&self, p: Vec3, world: Vec3) -> (f32, f32, f32) {
+        let (mut all, mut felt, mut fine) = (0.0f32, 0.0f32, 0.0f32);
+        let chunks = self.within(&Aabb::new(p, p));
+        let mut rest = &chunks[..];
+        while let Some(&first) = rest.first() {
+            let index = self.chunks[first as usize].stroke;
+            let n = rest
+                .iter()
+                .take_while(|c| self.chunks[**c as usize].stroke == index)
+                .count();
+            let (own, after) = rest.split_at(n);
+            rest = after;
+            let stroke = &self.strokes[index as usize];
+            let q = stroke.to_local.map_or(p, |m| m.transform_point3(p));
+            let mut scale = 1.0 / stroke.scale;
+            let one = match &stroke.kind {
+                Inking::Points => {
+                    let u2 = own
+                        .iter()
+                        .flat_map(|c| {
+                            let c = &self.chunks[*c as usize];
+                            &self.segments[c.from as usize..c.to as usize]
+                        })
+                        .map(|s| s.at(q.x, q.y, q.z))
+                        .fold(f32::INFINITY, f32::min);
+                    self.family.at_point(u2)
+                }
+                Inking::Line(from, along, length, inverse) => {
+                    let (d2, s0) = axis(*from, *along, *inverse, q.x, q.y, q.z);
+                    self.family.at_line(d2, s0, s0 + length * inverse)
+                }
+                Inking::Polygon(area) => area.at(&self.family, q),
+                Inking::Field(program, radius) => half_space(program.at(world) / radius),
+                Inking::Canvas(painting) => {
+                    let (f, own, fine) = painting.point(q, world);
+                    scale = if own > 0.0 {
+                        fine / own / stroke.scale
+                    } else {
+                        0.0
+                    };
+                    f
+                }
+            } * stroke.weight;
+            if stroke.erase {
+                all = erased(all, one);
+                continue;
+            }
+            felt += one;
+            fine += one * scale;
+            all = blended(all, one, self.blend);
+        }
+        (all, felt, fine)
+    }
+
+    /// φ at one place of the canvas, metres.
+    pub fn at(&self, p: Vec3, world: Vec3) -> f32 {
+        let (all, felt, fine) = self.point(p, world);
+        if fine > 0.0 {
+            return (T - all) * felt / fine;
+        }
+        let away = |c: &Chunk| {
+            let gap = (c.bounds.min - p).max(p - c.bounds.max).max(Vec3::ZERO);
+            gap.length().max(T * self.strokes[c.stroke as usize].scale)
+        };
+        self.chunks
+            .iter()
+            .filter(|c| !self.strokes[c.stroke as usize].erase)
+            .map(away)
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    /// Bounds of F, and of the strokes' scales, in a block.
+    fn felt(&self, block: &Block) -> Option<Felt> {
+        let chunks = self.within(&block.within);
+        if chunks.len() > MANY {
+            return None;
+        }
+        let mut felt = Felt::default();
+        let mut rest = &chunks[..];
+        while let Some(&first) = rest.first() {
+            let index = self.chunks[first as usize].stroke;
+            let n = rest
+                .iter()
+                .take_while(|c| self.chunks[**c as usize].stroke == index)
+                .count();
+            let (own, after) = rest.split_at(n);
+            rest = after;
+            let stroke = &self.strokes[index as usize];
+            let (c, radius) = match &stroke.to_local {
+                None => (block.centre, block.radius),
+                Some(m) => {
+                    let columns = [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis];
+                    let most = columns
+                        .iter()
+                        .map(|c| c.length_squared())
+                        .sum::<f32>()
+                        .sqrt();
+                    (m.transform_point3(block.centre), block.radius * most)
+                }
+            };
+            let family = &self.family;
+            let mut scales = (stroke.scale, stroke.scale);
+            let mut slope = stroke.slope;
+            let (low, high) = match &stroke.kind {
+                Inking::Points => {
+                    let (mut near, mut far) = (f32::INFINITY, f32::INFINITY);
+                    for i in own {
+                        let chunk = &self.chunks[*i as usize];
+                        for s in &self.segments[chunk.from as usize..chunk.to as usize] {
+                            let (u, r) = (s.at(c.x, c.y, c.z).sqrt(), radius / s.thinnest());
+                            near = near.min(u - r);
+                            far = far.min(u + r);
+                        }
+                    }
+                    let near = near.max(0.0);
+                    (family.at_point(far * far), family.at_point(near * near))
+                }
+                Inking::Line(from, along, length, inverse) => {
+                    let (d2, s0) = axis(*from, *along, *inverse, c.x, c.y, c.z);
+                    let here = family.at_line(d2, s0, s0 + length * inverse);
+                    let slope = stroke.slope / stroke.weight * block.radius;
+                    let s = (-s0).clamp(0.0, length * inverse);
+                    let d = (d2 + (s0 + s) * (s0 + s)).sqrt() - radius * inverse;
+                    (here - slope, (here + slope).min(family.at_axis(d.max(0.0))))
+                }
+                Inking::Polygon(area) => {
+                    let here = area.at(family, c);
+                    let slope = stroke.slope / stroke.weight * block.radius;
+                    let h = ((c - area.origin).dot(area.axes[2]).abs() - radius) * area.inverse;
+                    (
+                        here - slope,
+                        (here + slope).min(family.at_plane(h.max(0.0))),
+                    )
+                }
+                Inking::Field(program, radius) => {
+                    let steep = program.steepest(block.world, block.half)?;
+                    slope *= stroke.weight * HALF_SPACE_SLOPE / radius * steep;
+                    let (low, high) = program.bounds_of(block.world, block.half);
+                    (half_space(high / radius), half_space(low / radius))
+                }
+                Inking::Canvas(painting) => {
+                    let m = stroke.to_local.unwrap_or(Affine3A::IDENTITY);
+                    let inside = Block {
+                        within: crate::recipe::transformed(&block.within, &m),
+                        centre: c,
+                        radius,
+                        ..*block
+                    };
+                    let inner = painting.felt(&inside)?;
+                    slope = stroke.weight * inner.slope / stroke.scale;
+                    if inner.widest > 0.0 {
+                        scales = (inner.finest * stroke.scale, inner.widest * stroke.scale);
+                    }
+                    (inner.low, inner.high)
+                }
+            };
+            // Rounding, here and in the closed forms.
+            let low = stroke.weight * (low - 2.0e-5).max(0.0);
+            let high = stroke.weight * (high + 2.0e-5).max(0.0);
+            felt.slope += slope;
+            if stroke.erase {
+                (felt.low, felt.high) = (erased(felt.low, high), erased(felt.high, low));
+                continue;
+            }
+            felt.low = blended(felt.low, low, self.blend);
+            felt.high = blended(felt.high, high, self.blend);
+            felt.finest = felt.finest.min(scales.0);
+            felt.widest = felt.widest.max(scales.1);
+        }
+        felt.low -= 1.0e-4 * felt.low.abs();
+        felt.high += 1.0e-4 * felt.high.abs();
+        Some(felt)
+    }
+
+    /// Bounds of φ in a block, metres of the canvas; `local_step` as in [`Place`].
+    pub fn range(&self, block: &Block, local_step: f32) -> (f32, f32) {
+        let Some(felt) = self.felt(block) else {
+            return (f32::MIN, f32::MAX);
+        };
+        let none = (self.least * T).min((FAR + 1.0) * local_step);
+        if felt.widest <= 0.0 || felt.high <= 0.0 {
+            return (none, f32::MAX);
+        }
+        let at = |f: f32| {
+            let d = T - f;
+            let (a, b) = (d * felt.finest, d * felt.widest);
+            (a.min(b), a.max(b))
+        };
+        let low = at(felt.high).0;
+        if felt.low > 0.0 {
+            (low, at(felt.low).1)
+        } else {
+            (low.min(none), f32::MAX)
+        }
+    }
+
+    /// What a zero of φ within one metre of a node would make of |φ| there at most; `None` where
+    /// that is not known.
+    pub fn steepest(&self, block: &Block) -> Option<f32> {
+        let felt = self.felt(block)?;
+        Some((felt.slope * felt.widest).max(1.0))
+    }
+}
+
+/// Bounds in a block.
+struct Felt {
+    low: f32,
+    high: f32,
+    /// Of the scales of what was painted.
+    finest: f32,
+    widest: f32,
+    slope: f32,
+}
+
+impl Default for Felt {
+    fn default() -> Self {
+        Self {
+            low: 0.0,
+            high: 0.0,
+            finest: f32::INFINITY,
+            widest: 0.0,
+            slope: 0.0,
+        }
+    }
+}
+
+impl Area {
+    #[inline(always)]
+    fn at(&self, family: &Family, p: Vec3) -> f32 {
+        let q = (p - self.origin) * self.inverse;
+        let flat = Vec2::new(q.dot(self.axes[0]), q.dot(self.axes[1]));
+        family.at_polygon(&self.corners, flat, q.dot(self.axes[2]))
+    }
+}
+
+fn touch(a: &Aabb, b: &Aabb) -> bool {
+    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
+}
+
+/// The squared distance from a line's axis and where its start lies along it, in supports.
+#[inline(always)]
+fn axis(from: Vec3, along: Vec3, inverse: f32, x: f32, y: f32, z: f32) -> (f32, f32) {
+    let (qx, qy, qz) = (
+        (from.x - x) * inverse,
+        (from.y - y) * inverse,
+        (from.z - z) * inverse,
+    );
+    let s = qx * along.x + qy * along.y + qz * along.z;
+    let (ex, ey, ez) = (qx - s * along.x, qy - s * along.y, qz - s * along.z);
+    (ex * ex + ey * ey + ez * ez, s)
+}
+
+fn moved(points: &Points, m: &Affine3A) -> Points {
+    let mut out = Points {
+        x: [0.0; NODES],
+        y: [0.0; NODES],
+        z: [0.0; NODES],
+        centre: m.transform_point3(points.centre),
+        radius: 0.0,
+    };
+    let c = m.matrix3;
+    let most = [c.x_axis, c.y_axis, c.z_axis]
+        .iter()
+        .map(|c| c.length_squared())
+        .sum::<f32>();
+    out.radius = points.radius * most.sqrt();
+    for i in 0..NODES {
+        let p = m.transform_point3(Vec3::new(points.x[i], points.y[i], points.z[i]));
+        (out.x[i], out.y[i], out.z[i]) = (p.x, p.y, p.z);
+    }
+    out
+}
+
+/// (aᵖ + bᵖ)^(1/p).
+fn blended(a: f32, b: f32, p: f32) -> f32 {
+    if p >= HARD {
+        a.max(b)
+    } else if p == 1.0 {
+        a + b
+    } else {
+        power(power(a, p) + power(b, p), 1.0 / p)
+    }
+}
+
+/// What is left of the potential `f` where `e` is taken away: (held below 2T) − e, not below 0.
+/// What lies above 2T goes first, so that nothing changes where e is 0.
+#[inline(always)]
+fn erased(f: f32, e: f32) -> f32 {
+    let over = f - held(f);
+    let ramp = (4.0 * e).clamp(0.0, 1.0);
+    let left = f - e - over * (ramp * ramp * (3.0 - 2.0 * ramp));
+    if left > 0.0 { left } else { 0.0 }
+}
+
+/// f below T, 2T from 2T on, smooth between and at both ends.
+#[inline(always)]
+fn held(f: f32) -> f32 {
+    let x = ((f - T) / T).clamp(0.0, 1.0);
+    let low = if f < T { f } else { T };
+    low + T * x * (1.0 + x - x * x)
+}
+
+fn erase_from(all: &mut [f32; NODES], one: &[f32; NODES]) {
+    for (a, e) in all.iter_mut().zip(one) {
+        *a = erased(*a, *e);
+    }
+}
+
+fn join(layers: &mut Layers, fine: f32) {
+    for i in 0..NODES {
+        layers.felt[i] += layers.one[i];
+        layers.fine[i] += layers.one[i] * fine;
+    }
+}
+
+fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inked) {
+    let scale = 1.0 / stroke.scale;
+    for i in 0..NODES {
+        layers.felt[i] += layers.one[i];
+        layers.fine[i] += layers.one[i] * fine[i] * scale;
+    }
+}
+
+/// Makes a loop over the nodes twice, once for wider registers: the same bits either way.
+macro_rules! wide {
+    ($name:ident, $wide:ident, $body:ident, ($($arg:ident: $type:ty),*)) => {
+        fn $name($($arg: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the processor has AVX2, as just asked.
+                return unsafe { $wide($($arg),*) };
+            }
+            $body($($arg),*);
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn $wide($($arg: $type),*) {
+            $body($($arg),*);
+        }
+    };
+}
+
+wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
+wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
+wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
+wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
+
+#[inline(always)]
+fn nearest_any(s: &Segment, p: &Points, out: &mut [f32; NODES]) {
+    for (i, o) in out.iter_mut().enumerate() {
+        let u = s.at(p.x[i], p.y[i], p.z[i]);
+        *o = if u < *o { u } else { *o };
+    }
+}
+
+#[inline(always)]
+fn profile_any(family: &Family, weight: f32, out: &mut [f32; NODES]) {
+    for o in out {
+        *o = weight * family.at_point(*o);
+    }
+}
+
+#[inline(always)]
+fn raise_any(out: &mut [f32; NODES], p: f32) {
+    for o in out {
+        *o = power(*o, p);
+    }
+}
+
+#[inline(always)]
+fn line_any(
+    family: &Family,
+    from: Vec3,
+    along: Vec3,
+    length: f32,
+    inverse: f32,
+    weight: f32,
+    p: &Points,
+    out: &mut [f32; NODES],
+) {
+    for (i, o) in out.iter_mut().enumerate() {
+        let (d2, s0) = axis(from, along, inverse, p.x[i], p.y[i], p.z[i]);
+        *o = weight * family.at_line(d2, s0, s0 + length * inverse);
+    }
+}
