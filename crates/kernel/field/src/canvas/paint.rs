@@ -683,9 +683,9 @@ fn join(layers: &mut Layers, fine: f32) {
 
 fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inked) {
     let scale = 1.0 / stroke.scale;
-    for i in 0..NODES {
+    for (i, fine) in fine.iter().enumerate() {
         layers.felt[i] += layers.one[i];
-        layers.fine[i] += layers.one[i] * fine[i] * scale;
+        layers.fine[i] += layers.one[i] * fine * scale;
     }
 }
 
