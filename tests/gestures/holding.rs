@@ -17,7 +17,7 @@ fn a_hand_moves_and_turns_what_it_holds_in_one_step() {
     let cube = s.place("solid/cube", HERE);
     let (steps, before) = (s.undo_len(), s.document().to_ron());
     s.press(Side::Right, Action::Grab);
-    assert_eq!(s.draft().held(Side::Right), Some(cube));
+    assert_eq!(s.held().get(Side::Right), Some(cube));
     let turn = Quat::from_rotation_y(FRAC_PI_2);
     let there = Pose {
         position: HERE + Vec3::new(0.3, 0.1, -0.2),
@@ -102,7 +102,7 @@ fn stretch(s: &mut Studio, at: Vec3, quadrant: Option<Vec2>, apart: f32) {
     s.frames(2);
     s.press(Side::Left, Action::Grab);
     s.press(Side::Right, Action::Grab);
-    assert!(s.draft().stretch.is_some(), "both hands hold it");
+    assert!(s.held().stretch().is_some(), "both hands hold it");
     s.swipe(quadrant);
     let [left, right] = hands(0.5 * apart);
     s.carry(Some(left), Some(right));
@@ -183,8 +183,8 @@ fn two_hands_hold_two_things() {
     s.reach(Side::Right, HERE + Vec3::X * 0.5);
     s.press(Side::Left, Action::Grab);
     s.press(Side::Right, Action::Grab);
-    assert_eq!(s.draft().held(Side::Left), Some(a));
-    assert_eq!(s.draft().held(Side::Right), Some(b));
+    assert_eq!(s.held().get(Side::Left), Some(a));
+    assert_eq!(s.held().get(Side::Right), Some(b));
     let up = |x: f32| Some(Pose::at(HERE + Vec3::new(x, 0.3, 0.0)));
     s.carry(up(-0.5), up(0.5));
     // Both let go in one frame.
@@ -256,7 +256,7 @@ fn out_of_reach(s: &mut Studio, id: ObjectId) {
     let before = s.placement(id);
     s.reach(Side::Right, HERE);
     s.press(Side::Right, Action::Grab);
-    assert_eq!(s.draft().held(Side::Right), None);
+    assert_eq!(s.held().get(Side::Right), None);
     s.carry_right(HERE + Vec3::X);
     s.let_go(Side::Right, Action::Grab);
     assert_eq!(s.placement(id), before);

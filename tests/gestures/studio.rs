@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use midair::{Stage, app};
-use midair_csg::Draft;
 use midair_document::{Document, Object, ObjectId};
 use midair_field::{Op, Placement, Recipe};
 use midair_mesh::{Report, TriMesh, check};
@@ -13,6 +12,7 @@ use midair_solid::Solid;
 use midair_studio::command::{Command, Errands};
 use midair_studio::evaluate::Evaluations;
 use midair_studio::hands::{Action, HandsInput, Pose, Side};
+use midair_studio::hold::Held;
 use midair_studio::notice::Notices;
 use midair_studio::pick::Touch;
 use midair_studio::project::{Begin, Places, Project, Shelf};
@@ -83,8 +83,8 @@ impl Studio {
         self.world().resource::<Project>().history().redo_len()
     }
 
-    pub fn draft(&self) -> &Draft {
-        self.world().resource::<Draft>()
+    pub fn held(&self) -> &Held {
+        self.world().resource::<Held>()
     }
 
     pub fn touched(&self, side: Side) -> Option<ObjectId> {

@@ -161,7 +161,7 @@ fn a_thing_deleted_by_the_other_hand_leaves_this_one_empty() {
     );
     s.click(Side::Left, Action::Delete);
     assert!(s.document().is_empty());
-    assert_eq!(s.draft().held(Side::Right), None);
+    assert_eq!(s.held().get(Side::Right), None);
     s.carry_right(HERE);
     s.let_go(Side::Right, Action::Grab);
     assert!(s.document().is_empty());

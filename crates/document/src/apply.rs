@@ -143,6 +143,10 @@ impl Document {
                 id: *id,
                 fresh: std::mem::replace(&mut self.change(*id)?.fresh, *fresh),
             },
+            Edit::SetDimmed { id, dimmed } => Edit::SetDimmed {
+                id: *id,
+                dimmed: std::mem::replace(&mut self.change(*id)?.dimmed, *dimmed),
+            },
             Edit::SetColour { id, colour } => Edit::SetColour {
                 id: *id,
                 colour: std::mem::replace(&mut self.change(*id)?.colour, *colour),

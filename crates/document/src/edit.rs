@@ -87,6 +87,13 @@ pub enum Edit<R = Recipe> {
         /// Whether it is fresh.
         fresh: bool,
     },
+    /// Draws an object faintly, or as usual.
+    SetDimmed {
+        /// Which.
+        id: ObjectId,
+        /// Whether it is faint.
+        dimmed: bool,
+    },
     /// Gives an object a colour, or takes it.
     SetColour {
         /// Which.
@@ -243,6 +250,7 @@ impl<R: Clone> Edit<R> {
             SetVisible { id, visible } => SetVisible { id, visible },
             SetLocked { id, locked } => SetLocked { id, locked },
             SetFresh { id, fresh } => SetFresh { id, fresh },
+            SetDimmed { id, dimmed } => SetDimmed { id, dimmed },
             SetColour { id, colour } => SetColour { id, colour },
             SetMaterial { id, material } => SetMaterial { id, material },
             SetLayer { id, layer } => SetLayer { id, layer },
@@ -286,6 +294,8 @@ impl Edit {
             Self::SetLocked { locked: true, .. } => "Lock",
             Self::SetLocked { .. } => "Unlock",
             Self::SetFresh { .. } => "Settle",
+            Self::SetDimmed { dimmed: true, .. } => "Dim",
+            Self::SetDimmed { .. } => "Undim",
             Self::SetColour { .. } => "Colour",
             Self::SetMaterial { .. } => "Material",
             Self::SetLayer { .. } => "Change layer",
@@ -322,6 +332,7 @@ impl Edit {
             Self::SetMaterial { id, .. } => (7, id.0),
             Self::SetLayer { id, .. } => (8, id.0),
             Self::SetGroup { id, .. } => (9, id.0),
+            Self::SetDimmed { id, .. } => (12, id.0),
             Self::SetPending { .. } => (10, 0),
             Self::SetStep { .. } => (11, 0),
             _ => return None,

@@ -32,6 +32,9 @@ pub struct Object<R = Recipe> {
     /// The result of the latest operation, not touched since.
     #[serde(default)]
     pub fresh: bool,
+    /// Drawn faintly: what was made of it stands in its place (a stroke that became a skeleton, say).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub dimmed: bool,
     /// The user's own colour for it.
     #[serde(default)]
     pub colour: Option<Colour>,
@@ -60,6 +63,7 @@ impl<R> Object<R> {
             visible: true,
             locked: false,
             fresh: false,
+            dimmed: false,
             colour: None,
             material: None,
         }
@@ -81,6 +85,7 @@ impl<R> Object<R> {
             visible: self.visible,
             locked: self.locked,
             fresh: self.fresh,
+            dimmed: self.dimmed,
             colour: self.colour,
             material: self.material.clone(),
         })

@@ -4,10 +4,12 @@
 //! [`StudioSet::Gather`]; the active tool reads them and applies edits in [`StudioSet::Act`];
 //! the entities follow the document in [`StudioSet::Rebuild`].
 
+pub mod carry;
 pub mod command;
 pub mod evaluate;
 pub mod hands;
 pub mod help;
+pub mod hold;
 pub mod notice;
 pub mod objects;
 pub mod operands;
@@ -38,6 +40,8 @@ pub enum StudioSet {
     Pick,
     /// The active tool moves from phase to phase.
     Act,
+    /// What the hands take, move, delete and save in every mode alike, where the tool leaves it to them.
+    Hold,
     /// Finished gestures become edits of the document.
     Commit,
     /// Entities follow the document; solids are evaluated off the frame.
@@ -58,6 +62,7 @@ impl Plugin for StudioPlugin {
                 StudioSet::Ask,
                 StudioSet::Pick,
                 StudioSet::Act,
+                StudioSet::Hold,
                 StudioSet::Commit,
                 StudioSet::Rebuild,
                 StudioSet::Cue,
@@ -79,6 +84,7 @@ impl Plugin for StudioPlugin {
             show::plugin,
             help::plugin,
         ))
+        .add_plugins((hold::plugin, carry::plugin))
         .add_plugins((plane::plugin, ruler::plugin, snap::plugin, world::plugin));
     }
 

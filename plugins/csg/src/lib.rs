@@ -1,14 +1,14 @@
 //! Assemble: booleans of library components on one signed distance field
 //! (EasyVRModeling §3–4).
 //!
-//! Components are grabbed, moved, turned and scaled; marked as operands of one sequence, read left
+//! Components are taken in hand as in every mode, marked as operands of one sequence, read left
 //! to right; and fused by one press. The marks live in the document; what hands are in the middle
 //! of lives here.
 
 mod act;
+mod carry;
 mod cue;
 mod fuse;
-mod hold;
 mod phase;
 mod preview;
 
@@ -16,12 +16,12 @@ use bevy::prelude::*;
 use midair_studio::{
     StudioSet,
     evaluate::Deliver,
+    hold::Ghosted,
     tools::{AddTool, Tool, ToolChanged, ToolId, tool_active},
 };
 
 pub use fuse::{Pending, fused_recipe};
-pub use hold::{Axis, Hold, RATIO, Stretch};
-pub use phase::{Draft, Options, Phase};
+pub use phase::{Draft, Phase};
 pub use preview::Preview;
 
 /// The tool's name in files.
@@ -39,32 +39,23 @@ impl Plugin for AssemblePlugin {
             order: 10,
         })
         .init_resource::<Draft>()
-        .init_resource::<Options>()
         .init_resource::<Preview>()
         .add_observer(abort)
+        .add_observer(carry::take)
         .add_systems(
             Update,
             (
                 act::ask.in_set(StudioSet::Ask),
-                // Marks and deletes look at what is touched; grabs come last, so that a thing deleted
-                // in this frame is not taken in hand.
-                (
-                    act::select,
-                    act::operate,
-                    act::delete,
-                    act::finish,
-                    act::save,
-                    act::grab,
-                )
+                // What is fused is what was marked in the same frame as well.
+                (act::select, act::operate, act::finish)
                     .chain()
                     .in_set(StudioSet::Act),
-                act::release.in_set(StudioSet::Commit),
                 // What is made ahead is asked for first; then the preview finds it at rest.
-                (fuse::anticipate, preview::follow)
+                (fuse::anticipate, preview::follow, preview::ghost)
                     .chain()
                     .in_set(StudioSet::Rebuild)
                     .after(Deliver),
-                (cue::colours, cue::hints).in_set(StudioSet::Cue),
+                cue::hints.in_set(StudioSet::Cue),
             )
                 .run_if(tool_active(ASSEMBLE)),
         );
@@ -75,11 +66,11 @@ impl Plugin for AssemblePlugin {
 fn abort(
     _: On<ToolChanged>,
     mut draft: ResMut<Draft>,
-    mut drafts: ResMut<midair_studio::show::Drafts>,
     mut preview: ResMut<Preview>,
+    mut ghosted: ResMut<Ghosted>,
     mut commands: Commands,
 ) {
     *draft = Draft::default();
-    drafts.clear();
     preview.clear(&mut commands);
+    ghosted.0.clear();
 }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 use midair_studio::{
     evaluate::{Delivery, Evaluations, Key, Live},
+    hold::Ghosted,
     project::Project,
     settings::Settings,
     show::{Drafts, Drawn, Tint},
@@ -156,4 +157,15 @@ pub(crate) fn follow(
         let mesh = meshes.add(sketch.mesh);
         preview.show(sketch.key, mesh, origin, &mut materials, &mut commands);
     }
+}
+
+/// What is previewed is drawn in place of the operands, which stay as shells.
+pub(crate) fn ghost(project: Res<Project>, preview: Res<Preview>, mut ghosted: ResMut<Ghosted>) {
+    let next = if preview.is_shown() {
+        let pending = project.document().pending();
+        pending.iter().map(|&(id, _)| id).collect()
+    } else {
+        Vec::new()
+    };
+    ghosted.set_if_neq(Ghosted(next));
 }

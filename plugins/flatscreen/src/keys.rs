@@ -141,6 +141,20 @@ pub(crate) fn commands(
             commands.write(Command::Mode(tool.id.clone()));
         }
     }
+    let carries = [
+        Control::Carry1,
+        Control::Carry2,
+        Control::Carry3,
+        Control::Carry4,
+    ];
+    for (control, tool) in carries.into_iter().zip(tools.all()) {
+        if controls.just_pressed(control) {
+            commands.write(Command::Carry {
+                objects: Vec::new(),
+                to: tool.id.clone(),
+            });
+        }
+    }
     for (control, id) in PANELS {
         if controls.just_pressed(control) && panels.all().iter().any(|p| p.id == id) {
             commands.write(Command::Panel {

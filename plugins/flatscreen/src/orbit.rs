@@ -221,7 +221,7 @@ pub(crate) fn steer(
         next.fly(&controls, time.delta_secs());
     }
     // While something is held the wheel is the hand's.
-    if scroll.delta.y != 0.0 && !panel && !pointer.holds() {
+    if scroll.delta.y != 0.0 && !panel && !pointer.has_wheel() {
         next.zoom(
             0.88_f32.powf(lines(&scroll)),
             pointer.pose(pointer.leading).position,

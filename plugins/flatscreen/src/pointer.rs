@@ -12,6 +12,7 @@ use midair_studio::{
     project::{Project, Shelf},
     ruler::{MeasureAsk, Ruler},
     settings::Settings,
+    tools::Aim,
     world::Similarity,
 };
 
@@ -47,6 +48,8 @@ pub struct Pointer {
     pub(crate) stretching: bool,
     /// Enter ended something and is not to finish as well until it is up again.
     pub(crate) enter_spent: bool,
+    /// How deep in the view what is being drawn was last, in metres.
+    drawn: Option<f32>,
     /// Components that were picked and not placed yet, and where in the window they were let go.
     picked: Vec<(String, Option<Vec2>)>,
 }
@@ -80,15 +83,21 @@ impl Default for Pointer {
             band: None,
             stretching: false,
             enter_spent: false,
+            drawn: None,
             picked: Vec::new(),
         }
     }
 }
 
 impl Pointer {
-    /// Whether a hand holds something, so that the wheel is not the camera's.
+    /// Whether a hand holds something.
     pub fn holds(&self) -> bool {
         self.grip.is_some() || self.stretching
+    }
+
+    /// Whether the wheel is the hand's and not the camera's.
+    pub(crate) fn has_wheel(&self) -> bool {
+        self.holds() || self.drawn.is_some()
     }
 
     /// Whether the pointer is over a thing and not over a panel.
@@ -145,13 +154,14 @@ type Scene<'w, 's> = (
     Res<'w, Project>,
     Res<'w, Shelf>,
     Res<'w, WorkPlane>,
+    Res<'w, Aim>,
 );
 
 pub(crate) fn point(
     (controls, scroll, mut moved, windows): Devices,
     (screen, gizmo, settings): (Res<Screen>, Res<Gizmo>, Res<Settings>),
     camera: Single<(&Camera, &Transform), With<Orbit>>,
-    (context, proxies, touch, project, shelf, plane): Scene,
+    (context, proxies, touch, project, shelf, plane, aim): Scene,
     mut pointer: ResMut<Pointer>,
     mut ruler: ResMut<Ruler>,
     mut input: ResMut<HandsInput>,
@@ -181,7 +191,8 @@ pub(crate) fn point(
     // The ruler and what joins the selection take the click for themselves.
     let taken = ruler.on || pressed(Control::SelectMore);
     let started = clicked && !taken;
-    let grabs = began(Control::Grab) && !taken;
+    // What acts draws: it takes nothing in hand.
+    let grabs = began(Control::Grab) && !taken && !aim.draws;
     pointer.acting |= started;
     // A latched hand that leads again lets go where it is.
     let unlatched = std::mem::take(&mut pointer.latched[side as usize]);
@@ -214,13 +225,32 @@ pub(crate) fn point(
     } else if !unlatched {
         pointer.over = false;
         pointer.turn = Quat::IDENTITY;
-        pointer.poses[side as usize] = match ray.filter(|_| !panel) {
+        let drawing = aim.draws && pointer.acting;
+        // A line that is being drawn goes on under a panel.
+        pointer.poses[side as usize] = match ray.filter(|_| drawing || !panel) {
             Some(ray) => {
                 let hit = context
                     .single()
                     .ok()
+                    .filter(|_| aim.surfaces)
                     .and_then(|c| pick::cast(&c, &proxies, ray.origin, ray.direction));
-                let position = hit.map_or_else(|| on_plane(&ray, eye, &plane), |h| h.point);
+                let caught = cursor.filter(|_| aim.draws).and_then(|at| {
+                    let eye = GlobalTransform::from(*eye);
+                    aim.caught(at, |p| camera.world_to_viewport(&eye, p).ok())
+                });
+                let position = caught.or(hit.map(|h| h.point)).unwrap_or_else(|| {
+                    let last = pointer.drawn.filter(|_| drawing && !plane.shown);
+                    last.and_then(|far| at_depth(&ray, eye, far))
+                        .unwrap_or_else(|| on_plane(&ray, eye, &plane))
+                });
+                let mut far = (position - eye.translation).dot(*eye.forward());
+                let position = if drawing && caught.is_none() && scroll.delta.y != 0.0 {
+                    far = (far * 1.05_f32.powf(lines(&scroll))).clamp(0.05, 40.0);
+                    at_depth(&ray, eye, far).unwrap_or(position)
+                } else {
+                    position
+                };
+                pointer.drawn = drawing.then_some(far);
                 // A small thing is touched from a fingertip's breadth away as well.
                 let touched = touch.get(side).map(|t| t.object);
                 let object = hit.map(|h| h.object).or(touched);
@@ -244,7 +274,7 @@ pub(crate) fn point(
                         spent: Vec2::ZERO,
                     });
                 }
-                if clicked && !pointer.over && !ruler.on {
+                if clicked && !pointer.over && !ruler.on && !(aim.draws && started) {
                     pointer.band = cursor.map(|from| Band::new(from, !started));
                 }
                 Pose {
@@ -254,6 +284,7 @@ pub(crate) fn point(
             }
             None => {
                 pointer.face = None;
+                pointer.drawn = None;
                 rest(eye, side)
             }
         };
@@ -395,6 +426,12 @@ fn ray_through(camera: &Camera, eye: &Transform, at: Option<Vec2>) -> Ray3d {
         origin: eye.translation,
         direction: eye.forward(),
     })
+}
+
+/// Where a ray is so deep in the view.
+fn at_depth(ray: &Ray3d, eye: &Transform, far: f32) -> Option<Vec3> {
+    let along = ray.direction.dot(*eye.forward());
+    (along > 0.1).then(|| ray.get_point(far / along))
 }
 
 /// Where nothing is hit: on the work plane if it is near (the ground, unless it is in use), else as far

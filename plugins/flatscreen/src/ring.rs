@@ -3,8 +3,10 @@
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
+    carry::in_hands,
     command::Command,
     hands::{Action, Hands, Side},
+    hold::Held,
     panel,
     tools::Tools,
 };
@@ -34,7 +36,7 @@ impl Ring {
 /// Stick, arrows, digits or the pointer choose.
 pub(crate) fn turn(
     controls: Res<Controls>,
-    hands: Res<Hands>,
+    (hands, held_things): (Res<Hands>, Res<Held>),
     windows: Query<&Window>,
     tools: Res<Tools>,
     mut ring: ResMut<Ring>,
@@ -79,7 +81,15 @@ pub(crate) fn turn(
         // A press of cancel takes the choice back.
         let meant = ring.chosen.filter(|_| !controls.pressed(Control::Cancel));
         if let Some(tool) = meant.and_then(|i| tools.all().get(i)) {
-            commands.write(Command::Mode(tool.id.clone()));
+            // What a hand holds goes along.
+            commands.write(if held_things.is_empty() {
+                Command::Mode(tool.id.clone())
+            } else {
+                Command::Carry {
+                    objects: in_hands(&held_things),
+                    to: tool.id.clone(),
+                }
+            });
         }
     }
     ring.set_if_neq(next);

@@ -145,6 +145,10 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
             id,
             fresh: b % 2 == 0,
         },
+        25 => Edit::SetDimmed {
+            id,
+            dimmed: b % 2 == 0,
+        },
         24 => Edit::SetPlacement {
             id,
             placement: Placement::at(Vec3::new(f32::NAN, 0.0, 0.0)),

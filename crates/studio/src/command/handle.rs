@@ -174,6 +174,7 @@ fn handle(
             Command::Dismiss => errands.start(Errand::Dismiss, &project),
             // Whose they are reads them.
             Command::Tool { .. }
+            | Command::Carry { .. }
             | Command::Objects(_)
             | Command::Operand(_)
             | Command::Plane(_)

@@ -43,6 +43,14 @@ pub enum Command {
     },
     /// Takes another tool in hand.
     Mode(ToolId),
+    /// Carries objects into a mode; those in the hands, or else the selected ones, where none is named.
+    Carry {
+        /// Which.
+        #[serde(default)]
+        objects: Vec<ObjectId>,
+        /// Into which mode.
+        to: ToolId,
+    },
     /// Sets the document's S_global, in metres.
     Step(f32),
     /// An empty document.

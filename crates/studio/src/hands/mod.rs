@@ -184,6 +184,13 @@ pub enum Haptic {
     Refused,
 }
 
+impl Haptic {
+    /// What is felt when something was done, or refused.
+    pub fn of(done: bool) -> Self {
+        if done { Self::Done } else { Self::Refused }
+    }
+}
+
 /// Both hands, the eyes, and the scale of the world.
 #[derive(Resource, Clone, Debug)]
 pub struct Hands {

@@ -3,7 +3,9 @@ use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
 use super::{Dock, Files, Panels, icon, kit};
+use crate::carry::in_hands;
 use crate::command::{Command, Dialog, Dialogs, Errands};
+use crate::hold::Held;
 use crate::project::{Project, Recoverables, Then};
 use crate::settings::Settings;
 use crate::tools::Tools;
@@ -24,6 +26,7 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
     let tools = world.resource::<Tools>();
     let left_behind = world.resource::<Recoverables>();
     let errands = world.resource::<Errands>();
+    let held = world.resource::<Held>();
     let mut asks = Vec::new();
     ui.horizontal_wrapped(|ui| {
         ui.menu_button("File", |ui| files(ui, world, &mut asks));
@@ -57,11 +60,18 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
         ui.separator();
         for tool in tools.all() {
             let active = tools.active().is_some_and(|t| t.id == tool.id);
-            if ui
+            let button = ui
                 .selectable_label(active, tool.name)
-                .on_hover_text(tool.about)
-                .clicked()
-            {
+                .on_hover_text(tool.about);
+            let dropped = !held.is_empty()
+                && button.contains_pointer()
+                && ui.input(|i| i.pointer.any_released());
+            if dropped {
+                asks.push(Command::Carry {
+                    objects: in_hands(held),
+                    to: tool.id.clone(),
+                });
+            } else if button.clicked() {
                 asks.push(Command::Mode(tool.id.clone()));
             }
         }

@@ -3,11 +3,22 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 /// What is remembered of files.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FileSettings {
     /// The documents opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
+    /// The ending of the mesh files that a hand's *save* writes: stl, 3mf, glb, obj, ply.
+    pub save_mesh_as: String,
+}
+
+impl Default for FileSettings {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            save_mesh_as: "stl".to_owned(),
+        }
+    }
 }
 
 /// How many documents are remembered.

@@ -4,10 +4,14 @@
 //! to the sets of [`StudioSet`] with [`tool_active`] as their condition. Ids are
 //! saved in documents and never renamed.
 
+mod aim;
+
 use std::borrow::Cow;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+
+pub use aim::{Aim, CATCH};
 
 use crate::{StudioSet, hands::Side};
 
@@ -101,6 +105,10 @@ pub struct ToolChanged {
     pub active: ToolId,
 }
 
+/// The step in which [`ToolChanged`] is triggered.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Announce;
+
 /// Registers a mode.
 pub trait AddTool {
     /// Adds `tool`; the first one in order is in the hands at the start.
@@ -179,12 +187,14 @@ impl Hints {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Tools>()
         .init_resource::<Hints>()
+        .init_resource::<Aim>()
         // First in the frame's work, so that no tool acts in the frame it was left.
-        .add_systems(Update, announce.in_set(StudioSet::Pick));
+        .add_systems(Update, announce.in_set(StudioSet::Pick).in_set(Announce));
 }
 
-fn announce(mut tools: ResMut<Tools>, mut commands: Commands) {
+fn announce(mut tools: ResMut<Tools>, mut aim: ResMut<Aim>, mut commands: Commands) {
     if tools.left {
+        aim.set_if_neq(Aim::default());
         tools.bypass_change_detection().left = false;
         if let Some(active) = tools.active.clone() {
             commands.trigger(ToolChanged { active });

@@ -18,6 +18,7 @@ pub use similarity::Similarity;
 use crate::StudioSet;
 use crate::command::Command;
 use crate::hands::{Action, Hands, Haptic, Side};
+use crate::hold::Reserved;
 use crate::pick::Touch;
 use crate::settings::Settings;
 use crate::show::{Drafts, Readouts};
@@ -123,7 +124,7 @@ fn ask(mut commands: MessageReader<Command>, mut view: ResMut<WorldView>) {
 /// Both grips on nothing hold the world.
 fn pull(
     mut hands: ResMut<Hands>,
-    touch: Res<Touch>,
+    (touch, reserved): (Res<Touch>, Res<Reserved>),
     drafts: Res<Drafts>,
     settings: Res<Settings>,
     mut view: ResMut<WorldView>,
@@ -142,7 +143,9 @@ fn pull(
     match view.pull {
         None => {
             let begins = both.iter().any(|h| h.pressed(Action::Grab));
-            let empty = Side::BOTH.iter().all(|&s| touch.get(s).is_none());
+            let empty = Side::BOTH
+                .iter()
+                .all(|&s| touch.get(s).is_none() && !reserved.has(s, Action::Grab));
             if begins && empty && drafts.is_empty() {
                 view.pull = Some(WorldPull::new(room, left, right));
                 for side in Side::BOTH {

@@ -9,6 +9,7 @@ use midair_studio::{
     plane::WorkPlane,
     project::{Project, Shelf},
     settings::Settings,
+    tools::Aim,
 };
 
 use super::camera::{rest, sticks};
@@ -34,6 +35,7 @@ type Scene<'w, 's> = (
     Res<'w, Project>,
     Res<'w, Shelf>,
     Res<'w, WorkPlane>,
+    Res<'w, Aim>,
 );
 
 /// What is asked for, and where it goes.
@@ -49,7 +51,7 @@ pub(crate) fn hands(
     (controls, settings, focus, ring, time): Says,
     screen: Res<Screen>,
     camera: Single<(&Camera, &Transform, &Orbit)>,
-    (context, proxies, project, shelf, plane): Scene,
+    (context, proxies, project, shelf, plane, aim): Scene,
     mut pad: ResMut<Pad>,
     mut input: ResMut<HandsInput>,
     mut commands: MessageWriter<Command>,
@@ -87,7 +89,7 @@ pub(crate) fn hands(
         pad.carry(&controls, eye, hand, view, dt);
     } else {
         let surface = |ray: Ray3d| {
-            let context = context.single().ok()?;
+            let context = context.single().ok().filter(|_| aim.surfaces)?;
             pick::cast(&context, &proxies, ray.origin, ray.direction).map(|h| h.point)
         };
         pad.roam(&controls, (camera, eye, orbit), (hand, view), dt, surface);
