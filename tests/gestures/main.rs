@@ -1,6 +1,7 @@
 //! Whole gestures through the hands, in the whole studio; and the training sessions, measured
 //! against an exact boolean.
 
+mod carry;
 mod desk;
 mod dropping;
 mod fuzz;

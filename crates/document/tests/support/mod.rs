@@ -78,7 +78,7 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
     let other = GroupId(pick(document.groups().map(|(id, _)| id.0).collect(), a));
     let next = document.next_id();
     let number = f32::from(b % 50) * 0.01 + 0.01;
-    match kind % 26 {
+    match kind % 27 {
         0..=3 => Edit::Add {
             id: ObjectId(next),
             object: Object::solid(format!("Ball {b}"), ball(number))
