@@ -120,8 +120,10 @@ pub(super) fn grab(
     }
     let [left, right] = Side::BOTH.map(|s| hands.get(s).pose.position);
     if let Some((object, stretch)) = &mut held.stretch {
-        // The right pad says along which axis (EasyVRModeling Fig. 4b).
-        if let Some(axis) = hands.get(Side::Right).swipe.and_then(Axis::of_quadrant) {
+        // The right pad says along which axis (EasyVRModeling Fig. 4b), or a click of either cross.
+        let touched = hands.get(Side::Right).swipe.and_then(Axis::of_quadrant);
+        let clicked = || Side::BOTH.iter().find_map(|&s| hands.get(s).cross());
+        if let Some(axis) = touched.or_else(|| clicked().map(Axis::from)) {
             stretch.choose(axis, left, right);
         }
         drafts.set(*object, stretch.placement(left, right));

@@ -3,6 +3,8 @@
 use bevy::math::{Vec2, Vec3};
 use midair_field::Placement;
 
+use crate::hands::Cross;
+
 /// The ratio of EasyVRModeling §4.3 Eq. 1 stays within these.
 pub const RATIO: std::ops::RangeInclusive<f32> = 0.4..=4.0;
 
@@ -52,6 +54,18 @@ impl Axis {
             Self::Y => Vec3::new(1.0, ratio, 1.0),
             Self::Z => Vec3::new(1.0, 1.0, ratio),
             Self::All => Vec3::splat(ratio),
+        }
+    }
+}
+
+/// The quadrants of the pad as arms of the cross.
+impl From<Cross> for Axis {
+    fn from(arm: Cross) -> Self {
+        match arm {
+            Cross::Up => Self::X,
+            Cross::Right => Self::Y,
+            Cross::Down => Self::Z,
+            Cross::Left => Self::All,
         }
     }
 }
