@@ -274,7 +274,8 @@ pub(crate) fn point(
                         spent: Vec2::ZERO,
                     });
                 }
-                if clicked && !pointer.over && !ruler.on && !(aim.draws && started) {
+                let draws = aim.draws && started;
+                if clicked && !pointer.over && !ruler.on && !draws {
                     pointer.band = cursor.map(|from| Band::new(from, !started));
                 }
                 Pose {
