@@ -35,6 +35,9 @@ pub enum EditError {
     /// A recipe that is not sound.
     #[error("the solid cannot be taken: {0}")]
     Recipe(#[from] RecipeFault),
+    /// A picture with impossible numbers.
+    #[error("a picture is 0.001 to 100 metres wide and high, and its opacity 0 to 1")]
+    Reference,
     /// A step that is not a number.
     #[error("{0} is not a step")]
     Step(f32),
@@ -387,5 +390,7 @@ fn kind_fits(kind: &Kind) -> Result<(), EditError> {
         Kind::Solid(recipe) => Ok(check_recipe(recipe, &mut HashSet::new())?),
         Kind::Foreign { bounds, .. } if !is_box(bounds) => Err(RecipeFault::Bounds.into()),
         Kind::Foreign { .. } => Ok(()),
+        Kind::Reference(reference) if !reference.is_sound() => Err(EditError::Reference),
+        Kind::Reference(_) => Ok(()),
     }
 }

@@ -69,7 +69,12 @@ impl Document {
                 Kind::Foreign { bounds, .. } if !is_box(bounds) => {
                     fault(format!("{who} has a box that is not finite"));
                 }
-                Kind::Foreign { .. } => {}
+                Kind::Reference(reference) if !reference.is_sound() => {
+                    fault(format!(
+                        "{who} is no picture: its size or its opacity is out of bounds"
+                    ));
+                }
+                Kind::Foreign { .. } | Kind::Reference(_) => {}
             }
         }
         let mut marked = HashSet::new();
@@ -84,10 +89,15 @@ impl Document {
         faults
     }
 
-    /// The objects that need a mesh the store does not hold, one line each.
+    /// The objects that need a mesh or a picture the store does not hold, one line each.
     pub fn check_meshes(&self, store: &MeshStore) -> Vec<String> {
         self.objects()
             .filter_map(|(id, object)| {
+                if let Some(reference) = object.reference() {
+                    let name = one_line(&object.name);
+                    let lost = store.image(reference.image).is_none();
+                    return lost.then(|| format!("object {id} (\"{name}\") lacks its picture"));
+                }
                 let lost = self.lost_meshes(id, store);
                 (lost > 0).then(|| {
                     let s = if lost == 1 { "" } else { "es" };

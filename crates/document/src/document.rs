@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::recipes::walk;
 use crate::stored::Stored;
-use crate::{Edit, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use crate::{Edit, Group, GroupId, ImageHash, Kind, Layer, LayerId, Object, ObjectId};
 
 /// The whole of the user's work, but for the meshes it names: a plain value.
 ///
@@ -147,6 +147,12 @@ impl Document {
         meshes
     }
 
+    /// The pictures the document needs.
+    pub fn images(&self) -> BTreeSet<ImageHash> {
+        let of = |object: &Arc<Object>| Some(object.reference()?.image);
+        self.objects.values().filter_map(of).collect()
+    }
+
     /// The edit that puts `members` into a new group of its own, inside the group they share.
     pub fn group_edit(&self, name: impl Into<String>, members: &[ObjectId]) -> Edit {
         let id = GroupId(self.next_id);
@@ -245,5 +251,6 @@ pub(crate) fn meshes_of(
                 meshes.insert(*mesh);
             }
         }),
+        Kind::Reference(_) => {}
     }
 }

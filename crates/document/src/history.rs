@@ -6,7 +6,7 @@ use midair_mesh::MeshHash;
 
 use crate::document::meshes_of;
 use crate::journal::{Change, Journal};
-use crate::{Document, Edit, EditError, MeshStore, Object, ObjectId};
+use crate::{Document, Edit, EditError, ImageHash, Kind, MeshStore, Object, ObjectId};
 
 /// The document with what was done to it: transactions, undo and redo, and the journal.
 ///
@@ -403,4 +403,17 @@ pub(crate) fn meshes_of_edits(edits: &[Edit]) -> BTreeSet<MeshHash> {
         edit.kinds(&mut |kind| meshes_of(kind, &mut seen, &mut meshes));
     }
     meshes
+}
+
+/// The pictures that edits bring in.
+pub(crate) fn images_of_edits(edits: &[Edit]) -> BTreeSet<ImageHash> {
+    let mut images = BTreeSet::new();
+    for edit in edits {
+        edit.kinds(&mut |kind| {
+            if let Kind::Reference(reference) = kind {
+                images.insert(reference.image);
+            }
+        });
+    }
+    images
 }

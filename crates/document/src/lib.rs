@@ -24,6 +24,7 @@ mod edit;
 mod file;
 mod history;
 mod ids;
+mod image_hash;
 mod journal;
 mod mesh_store;
 mod object;
@@ -37,10 +38,11 @@ pub use edit::Edit;
 pub use file::{OpenError, Opened, SaveError, open, save};
 pub use history::{History, InProgress};
 pub use ids::{GroupId, LayerId, ObjectId};
+pub use image_hash::ImageHash;
 pub use journal::{
     Journal, JournalError, MeshSpool, Recoverable, Recovered, Recovery, RecoveryError,
 };
 pub use mesh_store::MeshStore;
-pub use object::{Colour, Group, Kind, Layer, Object};
+pub use object::{Colour, Group, Kind, Layer, Object, Reference};
 pub use recipes::{RecipeFault, TableError};
 pub use stored::{FORMAT, TextError};

@@ -3,8 +3,10 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use midair_mesh::{MeshHash, TriMesh};
 
-/// The meshes of a session, by the hash of their content. A clone is the same store; meshes are
-/// added and never taken away, so that undo always finds what it needs.
+use crate::ImageHash;
+
+/// The meshes of a session, and the files of its pictures, by the hash of their content. A clone is
+/// the same store; they are added and never taken away, so that undo always finds what it needs.
 #[derive(Clone, Debug, Default)]
 pub struct MeshStore(Arc<RwLock<Meshes>>);
 
@@ -12,6 +14,7 @@ pub struct MeshStore(Arc<RwLock<Meshes>>);
 struct Meshes {
     sound: HashMap<MeshHash, Arc<TriMesh>>,
     damaged: HashMap<MeshHash, Arc<[u8]>>,
+    images: HashMap<ImageHash, Arc<[u8]>>,
 }
 
 impl MeshStore {
@@ -46,6 +49,19 @@ impl MeshStore {
     /// Whether there is no mesh.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Takes a picture file in and returns its name.
+    pub fn insert_image(&self, bytes: impl Into<Arc<[u8]>>) -> ImageHash {
+        let bytes = bytes.into();
+        let hash = ImageHash::of(&bytes);
+        self.write().images.entry(hash).or_insert(bytes);
+        hash
+    }
+
+    /// The picture file of that name.
+    pub fn image(&self, hash: ImageHash) -> Option<Arc<[u8]>> {
+        self.read().images.get(&hash).cloned()
     }
 
     /// Keeps bytes that should be a mesh and are not, so that saving writes them again.

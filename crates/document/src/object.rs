@@ -2,7 +2,7 @@ use midair_field::{Node, Placement, Recipe};
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
 
-use crate::{GroupId, LayerId};
+use crate::{GroupId, ImageHash, LayerId};
 
 /// One thing in the scene.
 ///
@@ -102,25 +102,44 @@ impl Object {
     pub fn recipe(&self) -> Option<&Recipe> {
         match &self.kind {
             Kind::Solid(recipe) => Some(recipe),
-            Kind::Foreign { .. } => None,
+            Kind::Foreign { .. } | Kind::Reference(_) => None,
         }
     }
 
-    /// The object as an operand: a solid's recipe, or the baked mesh of any other tool's object.
-    pub fn operand(&self) -> Recipe {
+    /// The object as an operand: a solid's recipe, or the baked mesh of any other tool's object. A
+    /// picture is none.
+    pub fn operand(&self) -> Option<Recipe> {
         match &self.kind {
-            Kind::Solid(recipe) => recipe.clone(),
+            Kind::Solid(recipe) => Some(recipe.clone()),
             Kind::Foreign {
                 tool,
                 data,
                 mesh,
                 bounds,
-            } => Recipe::new(Node::Foreign {
+            } => Some(Recipe::new(Node::Foreign {
                 tool: tool.clone(),
                 data: data.clone(),
                 mesh: *mesh,
                 bounds: *bounds,
-            }),
+            })),
+            Kind::Reference(_) => None,
+        }
+    }
+
+    /// The picture that a reference image shows.
+    pub fn reference(&self) -> Option<&Reference> {
+        match &self.kind {
+            Kind::Reference(reference) => Some(reference),
+            Kind::Solid(_) | Kind::Foreign { .. } => None,
+        }
+    }
+
+    /// The object's box in its own frame, before its scale: metres.
+    pub fn bounds(&self) -> Aabb {
+        match &self.kind {
+            Kind::Solid(recipe) => recipe.bounds(),
+            Kind::Foreign { bounds, .. } => *bounds,
+            Kind::Reference(reference) => reference.bounds(),
         }
     }
 }
@@ -142,6 +161,57 @@ pub enum Kind<R = Recipe> {
         /// The mesh's box, in the object's own frame.
         bounds: Aabb,
     },
+    /// A picture to work from: seen, and part of nothing.
+    Reference(Reference),
+}
+
+/// A picture that stands in the room to work from. It lies in the x and y of its own frame, its
+/// middle at the origin, and is seen from both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// The picture file, by its content.
+    pub image: ImageHash,
+    /// Width and height in metres, before the object's scale.
+    pub size: [f32; 2],
+    /// 0 for a picture that is not seen, 1 for one that nothing is seen through.
+    #[serde(default = "opaque")]
+    pub opacity: f32,
+}
+
+fn opaque() -> f32 {
+    1.0
+}
+
+impl Reference {
+    /// How wide and high a picture may be, in metres.
+    pub const SIZES: (f32, f32) = (0.001, 100.0);
+
+    /// Whether its numbers are a picture's.
+    pub fn is_sound(&self) -> bool {
+        let (least, most) = Self::SIZES;
+        self.size.iter().all(|s| (least..=most).contains(s)) && (0.0..=1.0).contains(&self.opacity)
+    }
+
+    /// The same picture at another width, its height in proportion; both within [`Self::SIZES`].
+    #[must_use]
+    pub fn at_width(self, width: f32) -> Self {
+        let (least, most) = Self::SIZES;
+        let [w, h] = self.size;
+        let factor = (width / w).clamp(least / w.min(h), most / w.max(h));
+        // A width that is no number leaves it as it is.
+        let factor = if factor.is_finite() { factor } else { 1.0 };
+        let size = self.size.map(|s| (s * factor).clamp(least, most));
+        Self { size, ..self }
+    }
+
+    /// Its box: without thickness.
+    pub fn bounds(&self) -> Aabb {
+        let half = glam::Vec3::new(0.5 * self.size[0], 0.5 * self.size[1], 0.0);
+        Aabb {
+            min: -half,
+            max: half,
+        }
+    }
 }
 
 impl<R> Kind<R> {
@@ -159,6 +229,7 @@ impl<R> Kind<R> {
                 mesh: *mesh,
                 bounds: *bounds,
             },
+            Self::Reference(reference) => Kind::Reference(*reference),
         })
     }
 }

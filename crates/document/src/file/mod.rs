@@ -1,4 +1,4 @@
-//! `*.midair`: a zip with `document.ron` and the meshes it names.
+//! `*.midair`: a zip with `document.ron` and the meshes and pictures it names.
 
 mod atomic;
 mod open;
@@ -10,6 +10,8 @@ use std::io;
 
 use midair_mesh::MeshHash;
 
+use crate::ImageHash;
+
 pub use open::{OpenError, Opened, open};
 pub use save::{SaveError, save};
 
@@ -17,6 +19,16 @@ const DOCUMENT: &str = "document.ron";
 
 fn mesh_entry(hash: MeshHash) -> String {
     format!("meshes/{hash}.ply")
+}
+
+/// A picture lies there as it was brought in, under an ending that says what it is.
+fn image_entry(hash: ImageHash, bytes: &[u8]) -> String {
+    let ending = if bytes.starts_with(b"\xff\xd8") {
+        "jpg"
+    } else {
+        "png"
+    };
+    format!("images/{hash}.{ending}")
 }
 
 /// What the system said, as part of a sentence: without its number, in one line.

@@ -6,10 +6,10 @@ use midair_mesh::{MeshHash, TriMesh};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::{DOCUMENT, mesh_entry, reason};
+use super::{DOCUMENT, image_entry, mesh_entry, reason};
 use crate::check::one_line;
 use crate::stored::TextError;
-use crate::{Document, MeshStore};
+use crate::{Document, ImageHash, MeshStore};
 
 /// A document read from a file.
 #[derive(Debug)]
@@ -86,7 +86,7 @@ const RATIO: u64 = 100;
 /// What any file may unpack to.
 const FREE: u64 = 16 * MIB;
 
-/// Opens a document. Objects whose mesh is missing or damaged are kept, with a warning.
+/// Opens a document. Objects whose mesh or picture is missing or damaged are kept, with a warning.
 ///
 /// # Errors
 /// [`OpenError`].
@@ -193,6 +193,26 @@ pub(super) fn read(path: &Path, mut from: impl Read + Seek, len: u64) -> Result<
             }
         }
     }
+    for hash in document.images() {
+        match image(&mut zip, hash, budget) {
+            Ok(bytes) => {
+                budget -= bytes.len() as u64;
+                // What is damaged is kept under another name, which no object has.
+                if meshes.insert_image(bytes) != hash {
+                    warnings.push(lost_image(
+                        path,
+                        hash,
+                        "it is not the picture its name says",
+                    ));
+                }
+            }
+            Err(EntryError::Missing) => warnings.push(lost_image(path, hash, "it is missing")),
+            Err(EntryError::TooLarge) => return Err(too_large(FREE + len.saturating_mul(RATIO))),
+            Err(EntryError::Damaged { reason, .. }) => {
+                warnings.push(lost_image(path, hash, &reason));
+            }
+        }
+    }
     Ok(Opened {
         document,
         meshes,
@@ -204,6 +224,29 @@ fn lost(path: &Path, hash: MeshHash, reason: &str) -> String {
     let hash = hash.to_string();
     format!(
         "{}: the mesh {}… cannot be used: {}; its objects are kept and not shown, an earlier copy may hold it",
+        path.display(),
+        &hash[..8],
+        one_line(reason)
+    )
+}
+
+/// A picture's file, whichever of the two kinds it is.
+fn image(
+    zip: &mut ZipArchive<impl Read + Seek>,
+    hash: ImageHash,
+    limit: u64,
+) -> Result<Vec<u8>, EntryError> {
+    let name = |start: &[u8]| image_entry(hash, start);
+    match entry(zip, &name(b""), limit) {
+        Err(EntryError::Missing) => entry(zip, &name(b"\xff\xd8"), limit),
+        found => found,
+    }
+}
+
+fn lost_image(path: &Path, hash: ImageHash, reason: &str) -> String {
+    let hash = hash.to_string();
+    format!(
+        "{}: the picture {}… cannot be used: {}; its object is kept and stands empty, bring the picture in again",
         path.display(),
         &hash[..8],
         one_line(reason)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::{DOCUMENT, atomic, mesh_entry, reason};
+use super::{DOCUMENT, atomic, image_entry, mesh_entry, reason};
 use crate::{Document, MeshStore};
 
 /// A document that was not saved. The file, where there was one, is as it was.
@@ -20,10 +20,10 @@ pub struct SaveError {
     pub reason: String,
 }
 
-/// Saves a document and the meshes it uses. The same document gives the same bytes. The old file
+/// Saves a document, and the meshes and pictures it uses. The same document gives the same bytes. The old file
 /// stays in place until the new one is whole and on disk.
 ///
-/// Returns a line for each object that lacks a mesh; it is saved all the same.
+/// Returns a line for each object that lacks a mesh or its picture; it is saved all the same.
 ///
 /// # Errors
 /// [`SaveError`] where the disk is full, read-only, or the folder is not there.
@@ -41,12 +41,18 @@ pub fn save(
     Ok(document.check_meshes(meshes))
 }
 
-/// The archive: entries in the order of their names, all of one fixed time. It is put together in
+/// The archive: the document, pictures and meshes, each in the order of their names, all of one fixed time. It is put together in
 /// memory, so that only whole ones ever reach the disk.
 pub(super) fn archive(document: &Document, meshes: &MeshStore) -> io::Result<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let text = document.to_ron();
     entry(&mut zip, DOCUMENT, text.as_bytes(), 6)?;
+    for hash in document.images() {
+        // A picture is packed already.
+        if let Some(bytes) = meshes.image(hash) {
+            entry(&mut zip, &image_entry(hash, &bytes), &bytes, 1)?;
+        }
+    }
     for hash in document.meshes() {
         // Coordinates hardly compress: the fastest level is as good as any.
         if let Some(mesh) = meshes.get(hash) {

@@ -22,8 +22,8 @@ pub use recovery::{Recoverable, Recovered, Recovery, RecoveryError};
 pub use spool::MeshSpool;
 
 use crate::file::reason;
-use crate::history::meshes_of_edits;
-use crate::{Document, Edit, MeshStore};
+use crate::history::{images_of_edits, meshes_of_edits};
+use crate::{Document, Edit, ImageHash, MeshStore};
 use record::Record;
 use sync::Syncer;
 
@@ -115,6 +115,7 @@ impl Journal {
         fs::rename(&fresh, folder.join(JOURNAL))?;
         let journal = Self::adopt(folder, lock, bytes.len() as u64)?;
         journal.keep_meshes(document.meshes(), meshes)?;
+        journal.keep_images(document.images(), meshes)?;
         Ok(journal)
     }
 
@@ -146,7 +147,7 @@ impl Journal {
         self.len
     }
 
-    /// Writes meshes ahead of the steps that use them, on any thread: a step that brings a mesh of
+    /// Writes meshes and pictures ahead of the steps that use them, on any thread: a step that brings a mesh of
     /// a million triangles then costs its frame nothing.
     pub fn spool(&self) -> MeshSpool {
         self.spool.clone()
@@ -175,7 +176,9 @@ impl Journal {
         meshes: &MeshStore,
     ) -> Option<String> {
         let record = Record::change(change, name, edits);
-        let kept = self.keep_meshes(meshes_of_edits(edits), meshes);
+        let kept = self
+            .keep_meshes(meshes_of_edits(edits), meshes)
+            .and(self.keep_images(images_of_edits(edits), meshes));
         let written = self.write(&record, document, meshes);
         kept.and(written).err().and_then(|e| self.tell(&e))
     }
@@ -205,6 +208,19 @@ impl Journal {
         Ok(())
     }
 
+    fn keep_images(
+        &self,
+        hashes: impl IntoIterator<Item = ImageHash>,
+        meshes: &MeshStore,
+    ) -> io::Result<()> {
+        for hash in hashes {
+            if let Some(bytes) = meshes.image(hash) {
+                self.spool.write_image(hash, &bytes)?;
+            }
+        }
+        Ok(())
+    }
+
     fn write(
         &mut self,
         record: &Record,
@@ -215,6 +231,7 @@ impl Journal {
         if self.behind {
             self.file.set_len(self.len)?;
             self.keep_meshes(document.meshes(), meshes)?;
+            self.keep_images(document.images(), meshes)?;
             let base = Record::Base {
                 document: document.clone(),
                 origin: None,

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use super::record::{self, Change, Record};
 use super::{JOURNAL, Journal, LOCK, MESHES, frame, lock_if_possible, spool};
 use crate::file::reason;
-use crate::history::meshes_of_edits;
+use crate::history::{images_of_edits, meshes_of_edits};
 use crate::{Document, History, MeshStore};
 
 /// Looks for work that a crash left behind.
@@ -189,16 +189,21 @@ impl Recoverable {
     }
 }
 
-/// Meshes of the file the session was opened from need not have reached the journal's folder.
+/// Meshes and pictures of the file the session was opened from need not have reached the journal's folder.
 fn meshes_from_file(origin: &Path, history: &History) {
     let store = history.meshes();
-    let lacking = history.document().meshes();
-    if lacking.iter().all(|&m| store.contains(m)) {
+    let (lacking, pictures) = (history.document().meshes(), history.document().images());
+    let whole = lacking.iter().all(|&m| store.contains(m))
+        && pictures.iter().all(|&i| store.image(i).is_some());
+    if whole {
         return;
     }
     if let Ok(opened) = crate::open(origin) {
         for mesh in lacking.iter().filter_map(|&m| opened.meshes.get(m)) {
             store.insert(mesh);
+        }
+        for bytes in pictures.iter().filter_map(|&i| opened.meshes.image(i)) {
+            store.insert_image(bytes);
         }
     }
 }
@@ -226,6 +231,7 @@ pub(super) fn replay(bytes: &[u8], meshes: &Path) -> Result<Replay, String> {
     };
     let fresh = |document: Document| {
         spool::read(meshes, document.meshes(), &store);
+        spool::read_images(meshes, document.images(), &store);
         let mut history = History::new(document, store.clone());
         // Steps are forgotten at the end, so that every step back finds its own.
         history.set_budget(usize::MAX);
@@ -256,6 +262,7 @@ pub(super) fn replay(bytes: &[u8], meshes: &Path) -> Result<Replay, String> {
             } => {
                 let edits = record::edits(recipes, &edits)?;
                 spool::read(meshes, meshes_of_edits(&edits), &store);
+                spool::read_images(meshes, images_of_edits(&edits), &store);
                 unsaved = true;
                 take(&mut history, change, name, edits, &fresh)
             }

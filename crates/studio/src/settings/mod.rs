@@ -13,6 +13,7 @@ mod patch;
 mod preview;
 mod shelf;
 mod snap;
+mod symmetry;
 mod units;
 mod world;
 
@@ -28,6 +29,7 @@ pub use patch::SettingFault;
 pub use preview::PreviewSettings;
 pub use shelf::ShelfSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
+pub use symmetry::{MirrorPlane, SymmetrySettings};
 pub use units::UnitSettings;
 pub use world::WorldSettings;
 
@@ -49,6 +51,8 @@ pub struct Settings {
     pub preview: PreviewSettings,
     /// What pulls at things that hands move.
     pub snap: SnapSettings,
+    /// What is made is made on other sides too.
+    pub symmetry: SymmetrySettings,
     /// How two hands move the world.
     pub world: WorldSettings,
     /// How far one is with learning.
