@@ -35,7 +35,7 @@ pub use apply::EditError;
 pub use autosave::Autosave;
 pub use document::Document;
 pub use edit::Edit;
-pub use file::{OpenError, Opened, SaveError, open, save};
+pub use file::{OpenError, Opened, SaveError, may_save, open, save};
 pub use history::{History, InProgress};
 pub use ids::{GroupId, LayerId, ObjectId};
 pub use image_hash::ImageHash;

@@ -40,7 +40,7 @@ pub enum ImportError {
     },
 }
 
-/// Brings a mesh into the user's library: read, centred and scaled to a longest side of 0.4 m
+/// Brings a mesh into the user's library: read, stood up where its format has Z up, centred and scaled to a longest side of 0.4 m
 /// (EasyVRModeling §5.2, 1–3), baked at the default step, so that placing it later does not wait,
 /// and kept under `name`, or the name of its file. Importing it again changes nothing.
 ///
@@ -64,7 +64,9 @@ pub fn import(
     if progress.is_cancelled() {
         return Err(cancelled());
     }
-    let mesh = midair_mesh::read(path)?.mesh.normalised(LONGEST_SIDE).0;
+    let read = midair_mesh::read(path)?;
+    let upright = read.mesh.stood_up(read.format.up());
+    let mesh = upright.normalised(LONGEST_SIDE).0;
     // Baked before it is kept: what cannot be made solid leaves nothing behind.
     let volumes = Volumes::new(folders);
     match volumes.bake(&mesh, STEP, progress) {

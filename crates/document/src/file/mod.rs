@@ -13,7 +13,7 @@ use midair_mesh::MeshHash;
 use crate::ImageHash;
 
 pub use open::{OpenError, Opened, open};
-pub use save::{SaveError, save};
+pub use save::{SaveError, may_save, save};
 
 const DOCUMENT: &str = "document.ron";
 

@@ -41,6 +41,17 @@ pub fn save(
     Ok(document.check_meshes(meshes))
 }
 
+/// Whether [`save`] could put a document at `path`, before anything is made for it. Leaves nothing behind.
+///
+/// # Errors
+/// [`SaveError`], as [`save`] would; a disk may still be full then.
+pub fn may_save(path: &Path) -> Result<(), SaveError> {
+    atomic::check(path).map_err(|e| SaveError {
+        path: path.to_owned(),
+        reason: reason(&e),
+    })
+}
+
 /// The archive: the document, pictures and meshes, each in the order of their names, all of one fixed time. It is put together in
 /// memory, so that only whole ones ever reach the disk.
 pub(super) fn archive(document: &Document, meshes: &MeshStore) -> io::Result<Vec<u8>> {

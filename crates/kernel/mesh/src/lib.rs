@@ -42,6 +42,7 @@ mod rescale;
 mod transform;
 mod tri_mesh;
 mod unit;
+mod up;
 mod weld;
 mod write;
 
@@ -52,4 +53,5 @@ pub use format::Format;
 pub use read::{Read, ReadError, ReadReason, read, read_as, read_bytes, read_bytes_as};
 pub use tri_mesh::{Aabb, MeshHash, TriMesh};
 pub use unit::{Unit, UnknownUnit};
-pub use write::{Named, WriteError, WriteOptions, WriteReason, encode, write};
+pub use up::{UnknownUp, Up};
+pub use write::{Named, WriteError, WriteOptions, WriteReason, encode, writable, write};

@@ -25,6 +25,8 @@ pub struct Read {
     pub warnings: Vec<String>,
     /// The file's name without folder and extension.
     pub name: String,
+    /// What it was read as.
+    pub format: Format,
 }
 
 /// Reads a mesh file, in the unit its format has ([`Format::unit`]).
@@ -145,5 +147,6 @@ fn parse(
         mesh,
         warnings,
         name,
+        format,
     })
 }

@@ -117,14 +117,30 @@ pub fn write(
         .ok_or(WriteReason::UnknownFormat)
         .and_then(|format| encode(format, meshes, options))
         .and_then(|bytes| save::save(path, &bytes))
-        .map_err(|reason| WriteError {
-            file: path
-                .file_name()
-                .unwrap_or(path.as_os_str())
-                .to_string_lossy()
-                .into_owned(),
-            reason,
-        })
+        .map_err(|reason| refused(path, reason))
+}
+
+/// Whether [`write`] could put a file at `path`, before anything is made for it. Leaves nothing behind.
+///
+/// # Errors
+/// What [`write`] would say of the name, the folder and the rights; a disk may still be full then.
+pub fn writable(path: &Path) -> Result<(), WriteError> {
+    Format::from_path(path)
+        .filter(|&format| format != Format::Gltf)
+        .ok_or(WriteReason::UnknownFormat)
+        .and_then(|_| save::begin(path).map(drop))
+        .map_err(|reason| refused(path, reason))
+}
+
+fn refused(path: &Path, reason: WriteReason) -> WriteError {
+    WriteError {
+        file: path
+            .file_name()
+            .unwrap_or(path.as_os_str())
+            .to_string_lossy()
+            .into_owned(),
+        reason,
+    }
 }
 
 /// The bytes of a file in `format`. [`Format::Gltf`] gives a GLB.

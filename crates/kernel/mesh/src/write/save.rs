@@ -1,10 +1,23 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use tempfile::NamedTempFile;
+
 use super::WriteReason;
 
 /// Puts `bytes` at `path`, whole or not at all. An existing file stays as it was until then.
 pub(super) fn save(path: &Path, bytes: &[u8]) -> Result<(), WriteReason> {
+    // Dropped on every error, and its file with it.
+    let mut file = begin(path)?;
+    file.write_all(bytes).map_err(of_io)?;
+    // Some file systems only find out here that they are full.
+    file.as_file().sync_all().map_err(of_io)?;
+    file.persist(path).map_err(|error| of_io(error.error))?;
+    Ok(())
+}
+
+/// The file beside `path` that is to take its place.
+pub(super) fn begin(path: &Path) -> Result<NamedTempFile, WriteReason> {
     if path.is_dir() {
         return Err(WriteReason::Folder);
     }
@@ -20,13 +33,7 @@ pub(super) fn save(path: &Path, bytes: &[u8]) -> Result<(), WriteReason> {
         // What any new file gets; the umask takes its part away.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    // Dropped on every error, and its file with it.
-    let mut file = builder.tempfile_in(folder).map_err(of_io)?;
-    file.write_all(bytes).map_err(of_io)?;
-    // Some file systems only find out here that they are full.
-    file.as_file().sync_all().map_err(of_io)?;
-    file.persist(path).map_err(|error| of_io(error.error))?;
-    Ok(())
+    builder.tempfile_in(folder).map_err(of_io)
 }
 
 fn of_io(error: io::Error) -> WriteReason {
