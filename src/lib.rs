@@ -1,6 +1,7 @@
 //! Midair, put together: which plugins make the app, and the command line.
 
 pub mod cli;
+mod device;
 mod report;
 mod shot;
 

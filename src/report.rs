@@ -29,6 +29,7 @@ pub fn probe(world: &mut World) -> Report {
                 kind: match object.kind {
                     Kind::Solid(_) => "solid".to_owned(),
                     Kind::Foreign { ref tool, .. } => tool.clone(),
+                    Kind::Reference(_) => "reference".to_owned(),
                 },
                 name: object.name.clone(),
                 transform: Mat4::from(object.placement.affine()).to_cols_array(),
@@ -79,5 +80,6 @@ fn mesh_of(
             solid.ok().map(|s| s.mesh())
         }
         Kind::Foreign { mesh, .. } => project.mesh(mesh).map(|m| m.transformed(&about.affine())),
+        Kind::Reference(_) => None,
     }
 }

@@ -89,9 +89,7 @@ fn frame_all(world: &World) -> Transform {
     let mut low = Vec3::INFINITY;
     let mut high = Vec3::NEG_INFINITY;
     for (_, object) in world.resource::<Project>().document().objects() {
-        let radius = object
-            .recipe()
-            .map(|r| r.bounds())
+        let radius = Some(object.bounds())
             .filter(|b| !b.is_empty())
             .map_or(0.3, |b| {
                 0.8 * (b.min.abs().max(b.max.abs()) * object.placement.scale.abs()).length()

@@ -15,6 +15,7 @@ pub(super) fn run(args: Export) -> Result<()> {
     let options = ExportOptions {
         step: args.step,
         unit: args.unit,
+        up: args.up,
         only: None,
     };
     let triangles = export(

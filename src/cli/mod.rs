@@ -45,6 +45,9 @@ pub struct Window {
     /// A session of what is asked for before that picture: only its `Ask` steps
     #[arg(long, value_name = "SESSION", requires = "shot", hide = true)]
     play: Option<PathBuf>,
+    /// Lose the graphics card after so many frames, to see that the window goes on
+    #[arg(long, value_name = "FRAMES", hide = true)]
+    lose_card: Option<u32>,
 }
 
 #[derive(Subcommand, Debug)]
@@ -107,6 +110,9 @@ pub struct Play {
     /// The grid step of the exports in metres [default: the document's own]
     #[arg(long, value_name = "METRES", value_parser = step)]
     step: Option<f32>,
+    /// The axis that points up in the exports: y or z [default: z in STL and 3MF, y in the rest]
+    #[arg(long, value_name = "AXIS")]
+    up: Option<midair_mesh::Up>,
 }
 
 /// `midair export`
@@ -123,6 +129,9 @@ pub struct Export {
     /// The unit of the numbers in the file [default: mm for STL and 3MF, m for the rest]
     #[arg(long, value_name = "UNIT")]
     unit: Option<midair_mesh::Unit>,
+    /// The axis that points up in the file: y or z [default: z in STL and 3MF, y in the rest]
+    #[arg(long, value_name = "AXIS")]
+    up: Option<midair_mesh::Up>,
 }
 
 /// `midair import`

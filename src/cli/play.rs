@@ -1,9 +1,11 @@
+use std::fs::File;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::{Context, Result};
-use midair_document::save;
+use midair_document::{may_save, save};
 use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
-use midair_solid::{ExportOptions, export};
+use midair_solid::{ExportOptions, export, may_export};
 use midair_studio::evaluate::Evaluations;
 use midair_studio::project::{Begin, Places, Project};
 
@@ -12,6 +14,16 @@ use crate::{Stage, app, probe, shot};
 
 pub(super) fn run(args: Play) -> Result<()> {
     let session = Session::load(&args.session)?;
+    // What cannot be written is said before a long session is played for it.
+    if let Some(file) = &args.save {
+        may_save(file)?;
+    }
+    for file in &args.export {
+        may_export(file)?;
+    }
+    for file in args.report.iter().chain(&args.shot) {
+        may_write(file)?;
+    }
     let opened = match &args.open {
         Some(file) => {
             let (document, meshes) = open(file)?;
@@ -55,6 +67,7 @@ pub(super) fn run(args: Play) -> Result<()> {
     for file in &args.export {
         let options = ExportOptions {
             step: args.step,
+            up: args.up,
             ..ExportOptions::default()
         };
         export(
@@ -73,6 +86,22 @@ pub(super) fn run(args: Play) -> Result<()> {
     }
     if let Some(file) = &args.shot {
         shot::picture(&mut app, file)?;
+    }
+    Ok(())
+}
+
+/// Whether a file could be written there; leaves nothing behind.
+fn may_write(file: &Path) -> Result<()> {
+    let there = file.exists();
+    let opened = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(file);
+    opened.with_context(|| format!("{} was not written", file.display()))?;
+    if !there {
+        // What was made only to see whether it can be.
+        let _ = std::fs::remove_file(file);
     }
     Ok(())
 }

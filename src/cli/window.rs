@@ -2,14 +2,13 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use bevy::app::AppExit;
-use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
 use midair_document::{Document, MeshStore, Object};
 use midair_playback::{RecorderPlugin, Session, Step};
 use midair_studio::command::Command;
 use midair_studio::project::{Begin, Places};
 
 use super::{Window, open};
-use crate::{Stage, app, shot};
+use crate::{Stage, app, device, shot};
 
 pub(super) fn run(args: Window) -> Result<()> {
     if args.vr {
@@ -38,15 +37,10 @@ pub(super) fn run(args: Window) -> Result<()> {
             journal: true,
         },
     );
-    app.insert_resource(RenderErrorHandler(|error, main, _| {
-        eprintln!(
-            "midair: the graphics card stopped drawing ({:?}), so the window closes. Your work is kept: \
-             start Midair again and press Restore it",
-            error.ty
-        );
-        main.write_message(AppExit::error());
-        RenderErrorPolicy::StopRendering
-    }));
+    device::watch(&mut app);
+    if let Some(frames) = args.lose_card {
+        device::lose_after(&mut app, frames);
+    }
     if let Some(record) = args.record {
         app.add_plugins(RecorderPlugin::create(&record, "Recorded live")?);
     }

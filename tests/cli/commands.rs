@@ -193,3 +193,66 @@ fn a_full_disk_behind_the_output_is_one_line() {
     let record = ["play", "session.ron", "--record", "/dev/full"];
     place.refused(&record, &["/dev/full"]);
 }
+
+#[test]
+fn slicers_get_z_up_and_everybody_what_they_ask_for() {
+    let place = Place::new();
+    // A slab: 0.4 m wide, twice as high as deep.
+    place.session(
+        r#"
+            Ask(ToggleLibrary), Ask(Place(component: "solid/cube", side: Right)),
+            Ask(Objects(Place([(1, (scale: (1, 0.5, 0.25)))]))),
+        "#,
+    );
+    place.done(&[
+        "play",
+        "session.ron",
+        "--save",
+        "a.midair",
+        "--export",
+        "a.stl",
+    ]);
+    place.done(&["play", "session.ron", "--export", "p.stl", "--up", "y"]);
+    let sizes = |name: &str| {
+        let bounds = midair_mesh::read(&place.path(name)).unwrap().mesh.bounds();
+        bounds.size().to_array().map(|v| (v * 100.0).round() as i32)
+    };
+    for (name, up, wanted) in [
+        ("b.stl", None, [40, 10, 20]),
+        ("c.stl", Some("z"), [40, 10, 20]),
+        ("d.stl", Some("y"), [40, 20, 10]),
+        ("e.glb", None, [40, 20, 10]),
+        ("f.obj", Some("Z"), [40, 10, 20]),
+    ] {
+        let mut args = vec!["export", "a.midair", "--to", name];
+        args.extend(up.map(|up| ["--up", up]).into_iter().flatten());
+        place.done(&args);
+        assert_eq!(sizes(name), wanted, "{name}");
+    }
+    assert_eq!(place.read("a.stl"), place.read("b.stl"));
+    assert_eq!(place.read("p.stl"), place.read("d.stl"));
+    let said = place.midair(&["export", "a.midair", "--to", "g.stl", "--up", "x"]);
+    assert_eq!(said.status, 2);
+}
+
+#[test]
+fn what_cannot_be_written_is_said_before_anything_is_played() {
+    let place = Place::new();
+    // Played to its end this would fail in another way.
+    place.session("Expect(objects: 7),");
+    for args in [["--save", "none/a.midair"], ["--export", "none/a.stl"]] {
+        place.refused(
+            &["play", "session.ron", args[0], args[1]],
+            &[args[1].rsplit('/').next().unwrap()],
+        );
+        let line = place.refused(&["play", "session.ron", args[0], args[1]], &[]);
+        assert!(!line.contains('7'), "{line}");
+    }
+    for args in [["--report", "none/a.json"], ["--shot", "none/a.png"]] {
+        let line = place.refused(&["play", "session.ron", args[0], args[1]], &[args[1]]);
+        assert!(!line.contains('7'), "{line}");
+    }
+    // Nothing is left of the question.
+    let line = place.refused(&["play", "session.ron", "--report", "a.json"], &["7"]);
+    assert!(!place.path("a.json").exists(), "{line}");
+}

@@ -42,7 +42,7 @@ fn block(folder: &Path, name: &str, a: f32) -> PathBuf {
 }
 
 impl Desk {
-    fn drop_files(&mut self, paths: &[PathBuf]) {
+    pub fn drop_files(&mut self, paths: &[PathBuf]) {
         let world = self.app.world_mut();
         let mut windows = world.query_filtered::<Entity, With<PrimaryWindow>>();
         let window = windows.single(world).unwrap();

@@ -118,6 +118,7 @@ fn one_object_alone_is_exported() {
     }));
     let path = s.home.path().join("ball.stl");
     s.ask(Command::Export {
+        up: None,
         path: path.clone(),
         step: Some(0.02),
         unit: None,

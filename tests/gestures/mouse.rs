@@ -107,7 +107,7 @@ impl Desk {
     }
 
     /// A component on the ground, by the library's own command.
-    fn thing(&mut self, component: &str) -> ObjectId {
+    pub fn thing(&mut self, component: &str) -> ObjectId {
         if !self.is_open("library") {
             self.strike_one(KeyCode::KeyL);
         }

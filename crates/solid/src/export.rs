@@ -3,7 +3,7 @@ use std::sync::atomic::AtomicBool;
 
 use midair_document::{Document, Kind, MeshStore, Object, ObjectId};
 use midair_field::{MeshSource, Placement};
-use midair_mesh::{Format, Named, TriMesh, Unit, WriteError, WriteOptions, write};
+use midair_mesh::{Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write};
 
 use crate::{Solid, SolidError, finish};
 
@@ -14,6 +14,8 @@ pub struct ExportOptions {
     pub step: Option<f32>,
     /// The unit of the numbers in the file; the format's own where `None`.
     pub unit: Option<Unit>,
+    /// The axis that points up in the file; the format's own where `None`: Z in STL and 3MF, Y in the rest.
+    pub up: Option<Up>,
     /// Only this object; all visible ones where `None`.
     pub only: Option<ObjectId>,
 }
@@ -56,6 +58,22 @@ pub enum ExportError {
     Write(#[from] WriteError),
 }
 
+/// Whether [`export`] could write a file there, before anything is made for it. Leaves nothing behind.
+///
+/// # Errors
+///
+/// [`ExportError`], as [`export`] would; a disk may still be full then.
+pub fn may_export(file: &Path) -> Result<(), ExportError> {
+    format(file)?;
+    Ok(midair_mesh::writable(file)?)
+}
+
+fn format(file: &Path) -> Result<Format, ExportError> {
+    Format::from_path(file)
+        .filter(|f| *f != Format::Gltf)
+        .ok_or_else(|| ExportError::Format { file: file.into() })
+}
+
 /// Writes the visible objects of a document as a mesh file, each as one named mesh, evaluated where
 /// it stands in the world, so that `step` is the step on the printed part. Returns the triangles
 /// written.
@@ -71,9 +89,7 @@ pub fn export(
     options: &ExportOptions,
     cancel: &AtomicBool,
 ) -> Result<usize, ExportError> {
-    if Format::from_path(file).is_none_or(|f| f == Format::Gltf) {
-        return Err(ExportError::Format { file: file.into() });
-    }
+    let up = options.up.unwrap_or(format(file)?.up());
     let step = options.step.unwrap_or(document.step());
     let mut meshes = Vec::new();
     for (id, object) in document.objects() {
@@ -81,9 +97,10 @@ pub fn export(
             Some(only) => id == only,
             None => document.is_visible(id),
         };
-        if wanted {
-            let mesh = object_mesh(file, object, store, volumes, step, cancel)?;
-            meshes.push(Named::new(object.name.clone(), mesh).finished(Some(finish(object))));
+        if wanted && let Some(mesh) = object_mesh(file, object, store, volumes, step, cancel)? {
+            meshes.push(
+                Named::new(object.name.clone(), mesh.standing(up)).finished(Some(finish(object))),
+            );
         }
     }
     meshes.retain(|m| !m.value.triangles.is_empty());
@@ -105,7 +122,7 @@ fn object_mesh(
     volumes: &dyn MeshSource,
     step: f32,
     cancel: &AtomicBool,
-) -> Result<TriMesh, ExportError> {
+) -> Result<Option<TriMesh>, ExportError> {
     match &object.kind {
         Kind::Solid(recipe) => {
             // Evaluated about the object's own origin and moved afterwards: far from the world's
@@ -125,14 +142,16 @@ fn object_mesh(
             for p in &mut mesh.positions {
                 *p += object.placement.translation;
             }
-            Ok(mesh)
+            Ok(Some(mesh))
         }
         Kind::Foreign { mesh, .. } => store
             .get(*mesh)
-            .map(|m| m.transformed(&object.placement.affine()))
+            .map(|m| Some(m.transformed(&object.placement.affine())))
             .ok_or_else(|| ExportError::MeshGone {
                 file: file.into(),
                 object: object.name.clone(),
             }),
+        // A picture to work from is no part of the work.
+        Kind::Reference(_) => Ok(None),
     }
 }

@@ -30,7 +30,7 @@ mod export;
 mod material;
 mod thumbnail;
 
-pub use export::{ExportError, ExportOptions, export};
+pub use export::{ExportError, ExportOptions, export, may_export};
 pub use material::{MATERIALS, MaterialInfo, PLAIN, finish};
 pub use thumbnail::Thumbnail;
 

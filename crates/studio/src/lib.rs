@@ -4,6 +4,7 @@
 //! [`StudioSet::Gather`]; the active tool reads them and applies edits in [`StudioSet::Act`];
 //! the entities follow the document in [`StudioSet::Rebuild`].
 
+mod bounded;
 pub mod carry;
 pub mod command;
 pub mod evaluate;
@@ -17,10 +18,12 @@ pub mod panel;
 pub mod pick;
 pub mod plane;
 pub mod project;
+pub mod reference;
 pub mod ruler;
 pub mod settings;
 pub mod show;
 pub mod snap;
+pub mod symmetry;
 pub mod tools;
 pub mod units;
 pub mod world;
@@ -85,7 +88,14 @@ impl Plugin for StudioPlugin {
             help::plugin,
         ))
         .add_plugins((hold::plugin, carry::plugin))
-        .add_plugins((plane::plugin, ruler::plugin, snap::plugin, world::plugin));
+        .add_plugins((
+            plane::plugin,
+            reference::plugin,
+            ruler::plugin,
+            snap::plugin,
+            symmetry::plugin,
+            world::plugin,
+        ));
     }
 
     fn finish(&self, app: &mut App) {

@@ -125,7 +125,7 @@ fn apply_mark(project: &mut Project, notices: &mut Notices, object: ObjectId, ma
             "Unmark operand"
         }
     };
-    project.commit(name, [Edit::SetPending { pending }], notices)
+    project.commit_live(name, [Edit::SetPending { pending }], notices)
 }
 
 /// A model that a hand touches and acts on is selected.

@@ -35,6 +35,6 @@ pub(crate) fn take(
         ));
     }
     if pending != document.pending() {
-        project.commit("Mark operand", [Edit::SetPending { pending }], &mut notices);
+        project.commit_live("Mark operand", [Edit::SetPending { pending }], &mut notices);
     }
 }

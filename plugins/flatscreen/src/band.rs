@@ -1,14 +1,17 @@
-//! A box drawn with the pointer on empty ground selects what lies in it.
+//! A box drawn with the pointer on empty ground selects what it touches.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
+use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
     command::Command,
     document::ObjectId,
+    evaluate::Evaluations,
     objects::{Ask, How},
-    project::Project,
+    pick::{self, Proxy},
+    project::{Project, Selection},
     ruler::selected_box,
-    show::Drafts,
+    show::{Drafts, form},
     tools::Tools,
 };
 
@@ -47,6 +50,9 @@ impl Band {
     }
 }
 
+/// So many points of each surface are looked at.
+const LOOKED_AT: usize = 1024;
+
 /// The command that selects.
 pub(crate) fn select(ids: Vec<ObjectId>, how: How) -> Command {
     Command::Objects(Ask::Select { ids, how })
@@ -58,6 +64,8 @@ pub(crate) fn drag(
     windows: Query<&Window>,
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     (project, drafts): (Res<Project>, Res<Drafts>),
+    evaluations: Res<Evaluations>,
+    (context, proxies): (ReadRapierContext, Query<&Proxy>),
     mut pointer: ResMut<Pointer>,
     mut commands: MessageWriter<Command>,
 ) {
@@ -84,12 +92,32 @@ pub(crate) fn drag(
     let (camera, eye) = camera.into_inner();
     let eye = GlobalTransform::from(*eye);
     let document = project.document();
-    // What has its middle in the box lies in it.
+    let seen = |at: Vec3| camera.world_to_viewport(&eye, at).ok();
+    let rect = band.rect();
+    // What a ray through the middle of the box meets lies in it, however large its triangles are.
+    let ray = camera.viewport_to_world(&eye, rect.center()).ok();
+    let middle = context
+        .single()
+        .ok()
+        .zip(ray)
+        .and_then(|(c, ray)| pick::cast(&c, &proxies, ray.origin, ray.direction));
     let within = |id: ObjectId| {
-        let only = midair_studio::project::Selection(vec![id]);
-        selected_box(&project, &only, &drafts)
-            .and_then(|(low, high)| camera.world_to_viewport(&eye, low.midpoint(high)).ok())
-            .is_some_and(|at| band.rect().contains(at))
+        let Some(object) = document.object(id) else {
+            return false;
+        };
+        let standing = drafts.get(id).unwrap_or(&object.placement);
+        let Some(form) = form(&project, &evaluations, object) else {
+            let only = Selection(vec![id]);
+            let whole = selected_box(&project, &only, &drafts);
+            return whole
+                .and_then(|(low, high)| seen(low.midpoint(high)))
+                .is_some_and(|at| rect.contains(at));
+        };
+        let affine = standing.affine();
+        let stride = form.positions.len().div_ceil(LOOKED_AT).max(1);
+        let mut points = form.positions.iter().step_by(stride);
+        middle.is_some_and(|m| m.object == id)
+            || points.any(|&p| seen(affine.transform_point3(p)).is_some_and(|at| rect.contains(at)))
     };
     let ids: Vec<_> = document
         .objects()

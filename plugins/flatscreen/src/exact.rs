@@ -5,7 +5,7 @@ use midair_studio::{
     command::Command,
     plane::{PlaneAsk, WorkPlane},
     ruler::{MeasureAsk, Ruler},
-    settings::Settings,
+    settings::{MirrorPlane, Settings, SymmetrySettings},
     world::WorldAsk,
 };
 
@@ -19,6 +19,7 @@ pub(crate) fn commands(
     (plane, ruler): (Res<WorkPlane>, Res<Ruler>),
     pointer: Res<Pointer>,
     eye: Single<(&Transform, &Orbit)>,
+    mut last: Local<Option<SymmetrySettings>>,
     mut commands: MessageWriter<Command>,
 ) {
     let pressed = |control| controls.just_pressed(control);
@@ -31,6 +32,23 @@ pub(crate) fn commands(
         if pressed(control) {
             commands.write(Settings::command(key, !on));
         }
+    }
+    if pressed(Control::Symmetry) {
+        let now = &settings.symmetry;
+        let next = if now.is_on() {
+            *last = Some(now.clone());
+            SymmetrySettings {
+                planes: now.planes,
+                ..SymmetrySettings::default()
+            }
+        } else {
+            // As it was before it was put off, else left and right.
+            last.clone().unwrap_or_else(|| SymmetrySettings {
+                mirror: MirrorPlane::X,
+                ..now.clone()
+            })
+        };
+        commands.write(Settings::command("symmetry", next));
     }
     if pressed(Control::Plane) {
         commands.write(Command::Plane(PlaneAsk::Show(!plane.shown)));

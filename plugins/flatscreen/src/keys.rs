@@ -61,9 +61,10 @@ fn control(action: Action) -> Option<Control> {
 }
 
 /// Controls that show or hide a panel, by its id.
-const PANELS: [(Control, &str); 5] = [
+const PANELS: [(Control, &str); 6] = [
     (Control::Export, "export"),
     (Control::Outline, "outline"),
+    (Control::Snaps, "snaps"),
     (Control::Settings, "settings"),
     (Control::Controls, "controls"),
     (Control::Help, "help"),
@@ -84,13 +85,16 @@ pub(crate) fn commands(
         }
     }
     let wireframe = Settings::command("look.wireframe", !settings.look.wireframe);
+    let orthographic = Settings::command("look.orthographic", !settings.look.orthographic);
     for (control, command) in [
         (Control::Save, Command::Save),
         (Control::Wireframe, wireframe),
+        (Control::Orthographic, orthographic),
         (Control::New, Command::Leave(Then::New)),
         (Control::Open, Command::Dialog(Dialog::Open)),
         (Control::SaveAs, Command::Dialog(Dialog::SaveAs)),
         (Control::Import, Command::Dialog(Dialog::Import)),
+        (Control::Reference, Command::Dialog(Dialog::Reference)),
     ] {
         if controls.just_pressed(control) {
             commands.write(command);
@@ -114,6 +118,7 @@ pub(crate) fn commands(
     for (control, ask) in [
         (Control::SelectAll, Ask::SelectAll),
         (Control::Duplicate, Ask::Duplicate),
+        (Control::Eyedropper, Ask::Dropper { on: true }),
         (Control::Group, Ask::Group),
         (Control::Ungroup, Ask::Ungroup),
         (Control::ShowAll, Ask::ShowAll),

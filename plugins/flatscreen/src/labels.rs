@@ -34,6 +34,7 @@ pub(crate) fn objects(
     let painter = ctx
         .layer_painter(egui::LayerId::background())
         .with_clip_rect(view);
+    let palette = Palette::of(&ctx.global_style().visuals);
     for (&id, cue) in &cues.0 {
         let Some(label) = &cue.label else { continue };
         let Some(at) = map.get(id).and_then(|e| transforms.get(e).ok()) else {
@@ -45,25 +46,26 @@ pub(crate) fn objects(
         let galley = painter.layout_no_wrap(
             label.clone(),
             egui::FontId::proportional(16.0),
-            egui::Color32::WHITE,
+            palette.text,
         );
         let rect =
             egui::Rect::from_center_size(screen.point(at), galley.size() + egui::vec2(16.0, 8.0));
         let [r, g, b, _] = cue.tint.colour().to_srgba().to_u8_array();
-        painter.rect_filled(rect, 6.0, egui::Color32::from_black_alpha(200));
+        painter.rect_filled(rect, 6.0, backing(&palette));
         painter.rect_stroke(
             rect,
             6.0,
             egui::Stroke::new(1.5, egui::Color32::from_rgb(r, g, b)),
             egui::StrokeKind::Inside,
         );
-        painter.galley(
-            rect.center() - 0.5 * galley.size(),
-            galley,
-            egui::Color32::WHITE,
-        );
+        painter.galley(rect.center() - 0.5 * galley.size(), galley, palette.text);
     }
     Ok(())
+}
+
+/// Behind words over the view: a panel's colour, nearly closed, so that they read in every room.
+fn backing(palette: &Palette) -> egui::Color32 {
+    palette.panel.gamma_multiply(0.92)
 }
 
 /// An empty room says how one begins.
@@ -155,6 +157,7 @@ pub(crate) fn readouts(
     let painter = ctx
         .layer_painter(egui::LayerId::background())
         .with_clip_rect(view);
+    let palette = Palette::of(&ctx.global_style().visuals);
     let mut taken: Vec<egui::Rect> = Vec::new();
     for readout in &readouts.0 {
         let eye = GlobalTransform::from(*eye);
@@ -164,7 +167,7 @@ pub(crate) fn readouts(
         let galley = painter.layout_no_wrap(
             readout.text.clone(),
             egui::FontId::proportional(14.0),
-            egui::Color32::WHITE,
+            palette.text,
         );
         let size = galley.size() + egui::vec2(12.0, 6.0);
         let mut rect = egui::Rect::from_center_size(egui::pos2(at.x, at.y + 24.0), size);
@@ -173,12 +176,8 @@ pub(crate) fn readouts(
             rect = rect.translate(egui::vec2(0.0, other.bottom() - rect.top() + 2.0));
         }
         taken.push(rect);
-        painter.rect_filled(rect, 4.0, egui::Color32::from_black_alpha(190));
-        painter.galley(
-            rect.center() - 0.5 * galley.size(),
-            galley,
-            egui::Color32::WHITE,
-        );
+        painter.rect_filled(rect, 4.0, backing(&palette));
+        painter.galley(rect.center() - 0.5 * galley.size(), galley, palette.text);
     }
     Ok(())
 }

@@ -15,11 +15,13 @@ mod gizmo;
 mod hints;
 mod keys;
 mod labels;
+mod monitors;
 mod names;
 mod orbit;
 mod panels;
 mod place;
 mod pointer;
+mod projection;
 mod ring;
 mod stretch;
 mod view;
@@ -27,7 +29,7 @@ mod view;
 use bevy::prelude::*;
 use bevy_egui::{EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
 use leafwing_input_manager::plugin::InputManagerSystem;
-use midair_studio::{StudioSet, hands::AdvanceHands, snap::ClearGuides};
+use midair_studio::{StudioSet, hands::WriteHands, snap::ClearGuides};
 
 pub use gamepad::Pad;
 pub use gizmo::{Gizmo, Mode};
@@ -66,7 +68,7 @@ impl Plugin for FlatscreenPlugin {
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
             )
-            .add_plugins((bindings::plugin, controls_panel::plugin))
+            .add_plugins((bindings::plugin, controls_panel::plugin, monitors::plugin))
             .add_systems(Startup, orbit::spawn)
             .add_systems(
                 Update,
@@ -75,6 +77,7 @@ impl Plugin for FlatscreenPlugin {
                     gamepad::lead,
                     gamepad::camera,
                     orbit::steer,
+                    projection::follow,
                     // Handles come before what lies behind them.
                     gizmo::steer,
                     // The hand follows the camera of this frame.
@@ -88,9 +91,8 @@ impl Plugin for FlatscreenPlugin {
                     attend,
                 )
                     .chain()
-                    .in_set(StudioSet::Gather)
-                    .after(ClearGuides)
-                    .before(AdvanceHands),
+                    .in_set(WriteHands)
+                    .after(ClearGuides),
             )
             .add_systems(
                 Update,

@@ -383,7 +383,7 @@ pub(crate) fn title(project: Res<Project>, mut windows: Query<&mut Window>) {
 }
 
 /// Files that are dropped on the window: documents are opened, anything else is brought into the
-/// library, and into the scene where it was dropped on the view.
+/// library, and into the scene where it was dropped on the view; pictures stand in the scene.
 pub(crate) fn drop(
     mut dropped: MessageReader<FileDragAndDrop>,
     screen: Res<Screen>,
@@ -391,20 +391,29 @@ pub(crate) fn drop(
     windows: Query<&Window>,
     mut commands: MessageWriter<Command>,
 ) {
-    let mut meshes = Vec::new();
+    let (mut meshes, mut pictures) = (Vec::new(), Vec::new());
     for file in dropped.read() {
         if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
             if path_buf.extension().is_some_and(|e| e == "midair") {
                 commands.write(Command::Leave(Then::Open(path_buf.clone())));
+            } else if panel::has_ending(path_buf, &panel::PICTURES) {
+                pictures.push(path_buf.clone());
             } else {
                 meshes.push(path_buf.clone());
             }
         }
     }
+    let cursor = windows.iter().find_map(Window::cursor_position);
+    if !pictures.is_empty() {
+        let at = pointer.pose(pointer.leading).position;
+        commands.write(Command::Reference {
+            paths: pictures,
+            at: (!screen.covers(cursor)).then_some(at),
+        });
+    }
     if meshes.is_empty() {
         return;
     }
-    let cursor = windows.iter().find_map(Window::cursor_position);
     commands.write(if screen.covers(cursor) {
         Command::Import(meshes)
     } else {

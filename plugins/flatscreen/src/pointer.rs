@@ -393,7 +393,9 @@ impl Grip {
     fn at(&self, ray: &Ray3d, eye: &Transform) -> Option<Vec3> {
         let Some((through, normal)) = self.plane else {
             let along = ray.direction.dot(*eye.forward()).max(0.1);
-            return Some(ray.get_point(self.depth / along));
+            // The ray starts at the near plane, and without perspective even behind the eye.
+            let ahead = (ray.origin - eye.translation).dot(*eye.forward());
+            return Some(ray.get_point((self.depth - ahead) / along));
         };
         if ray.direction.dot(*normal).abs() < 0.03 {
             return None;
@@ -443,7 +445,8 @@ fn on_plane(ray: &Ray3d, eye: &Transform, plane: &WorkPlane) -> Vec3 {
     } else {
         WorkPlane::default()
     };
-    let far = || ray.get_point(eye.translation.length().clamp(0.5, 10.0));
+    let ahead = (ray.origin - eye.translation).dot(*ray.direction);
+    let far = || ray.get_point(eye.translation.length().clamp(0.5, 10.0) - ahead);
     plane.meet(ray, 30.0).unwrap_or_else(far)
 }
 

@@ -8,7 +8,7 @@ use midair_studio::{
     StudioSet,
     command::Command,
     evaluate::Delivery,
-    hands::{AdvanceHands, HandsInput},
+    hands::{AdvanceHands, HandsInput, WriteHands},
     notice::Notices,
 };
 
@@ -100,8 +100,9 @@ impl Plugin for PlayerPlugin {
             .add_systems(
                 Update,
                 write
-                    .in_set(StudioSet::Gather)
                     // The hands of this frame are made from what is written here.
+                    .in_set(WriteHands)
+                    .in_set(StudioSet::Gather)
                     .before(AdvanceHands)
                     .run_if(resource_exists::<Player>),
             );

@@ -15,9 +15,13 @@ use crate::hands::{Action, Hands, Side};
 use crate::notice::Notices;
 use crate::panel::Panels;
 use crate::project::{Places, Project, Selection, Shelf};
+use crate::reference;
 use crate::settings::Settings;
 use crate::show::Drafts;
 use crate::tools::Tools;
+
+/// Metres from one picture to the next where several are brought in together.
+const REFERENCES_APART: f32 = 0.65;
 
 /// The most files that come into the scene when they are dropped on it together.
 const MOST_PLACED: usize = 4;
@@ -126,12 +130,14 @@ fn handle(
                 path,
                 step,
                 unit,
+                up,
                 only,
             } => errands.start(
                 Errand::Export {
                     path: path.clone(),
                     step: *step,
                     unit: *unit,
+                    up: *up,
                     only: *only,
                 },
                 &project,
@@ -141,6 +147,7 @@ fn handle(
                     path: path.clone(),
                     step: None,
                     unit: None,
+                    up: None,
                     only: Some(*object),
                 },
                 &project,
@@ -160,6 +167,18 @@ fn handle(
                     at,
                 };
                 errands.import(paths.iter().map(import), &places);
+            }
+            Command::Reference { paths, at } => {
+                for (i, path) in paths.iter().enumerate() {
+                    let aside = i as f32 * REFERENCES_APART * Vec3::X;
+                    let errand = Errand::Reference {
+                        path: path.clone(),
+                        at: at
+                            .or((i > 0).then_some(reference::BEHIND))
+                            .map(|at| at + aside),
+                    };
+                    errands.start(errand, &project);
+                }
             }
             Command::Open(path) => {
                 errands.start(Errand::Open(path.clone()), &project);

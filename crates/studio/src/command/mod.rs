@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use midair_document::{Edit, ObjectId};
-use midair_mesh::Unit;
+use midair_mesh::{Unit, Up};
 use serde::{Deserialize, Serialize};
 
 pub use errand::{Errands, Row};
@@ -71,6 +71,9 @@ pub enum Command {
         /// The file's unit; the format's own where `None`.
         #[serde(default)]
         unit: Option<Unit>,
+        /// The axis that points up in the file; the format's own where `None`.
+        #[serde(default)]
+        up: Option<Up>,
         /// Only this object; all that are visible where `None`.
         #[serde(default)]
         only: Option<ObjectId>,
@@ -90,6 +93,15 @@ pub enum Command {
         paths: Vec<PathBuf>,
         /// Where the first is to stand on its foot, in metres; the others stand beside it.
         at: Vec3,
+    },
+    /// Brings pictures into the scene to work from: PNG or JPEG.
+    Reference {
+        /// The files.
+        paths: Vec<PathBuf>,
+        /// Where the first is to stand on its lower edge, in metres, the others beside it; behind the
+        /// work where `None`.
+        #[serde(default)]
+        at: Option<Vec3>,
     },
     /// Gives up the files that are being read or written.
     CancelErrands,
@@ -149,6 +161,8 @@ pub enum Dialog {
     SaveAs,
     /// Meshes for the library.
     Import,
+    /// Pictures to work from.
+    Reference,
 }
 
 /// The file dialog asked for last, numbered so that each is shown once.

@@ -255,12 +255,24 @@ impl Hands {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<HandsInput>()
         .init_resource::<Hands>()
-        // Last in the set: the ways in have written their frames by then.
-        .add_systems(
+        .configure_sets(
             Update,
-            advance.in_set(StudioSet::Gather).in_set(AdvanceHands),
-        );
+            (WriteHands, FilterHands, AdvanceHands)
+                .chain()
+                .in_set(StudioSet::Gather),
+        )
+        // Last in the set: the ways in have written their frames by then.
+        .add_systems(Update, advance.in_set(AdvanceHands));
 }
+
+/// Ways in write [`HandsInput`].
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct WriteHands;
+
+/// What is in front of the scene takes what is its own out of [`HandsInput`]: a press on a panel is no press for the
+/// tool, and none in a recording.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct FilterHands;
 
 /// The step that turns [`HandsInput`] into [`Hands`]; ways in run before it.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]

@@ -45,7 +45,7 @@ pub(super) fn delete(
             drafts.take(object);
             held.drop(object);
         }
-        let done = project.commit("Delete", edits, &mut notices);
+        let done = project.commit_live("Delete", edits, &mut notices);
         selection.0.retain(|o| !objects.contains(o));
         hands.pulse(side, Haptic::of(done));
     }

@@ -98,5 +98,5 @@ fn put_down(
         with.into_iter()
             .map(|(id, placement)| Edit::SetPlacement { id, placement }),
     );
-    project.commit(name, edits, notices);
+    project.commit_live(name, edits, notices);
 }

@@ -153,6 +153,41 @@ pub enum Ask {
         /// Its id.
         material: Option<String>,
     },
+    /// Gives a colour and a material together.
+    Look {
+        /// Which.
+        #[serde(default)]
+        ids: Vec<ObjectId>,
+        /// The colour.
+        colour: Option<Colour>,
+        /// The material's id.
+        material: Option<String>,
+    },
+    /// Gives what is selected, or `ids`, the colour and the material of another object.
+    Like {
+        /// Which.
+        #[serde(default)]
+        ids: Vec<ObjectId>,
+        /// Whose.
+        of: ObjectId,
+    },
+    /// Takes the eyedropper in hand, or puts it away: with it the next object that is acted on gives its
+    /// colour and material to what is selected.
+    Dropper {
+        /// Whether it is in hand.
+        on: bool,
+    },
+    /// Changes a picture to work from.
+    Picture {
+        /// Which.
+        id: ObjectId,
+        /// Its width in the room, in metres; its height goes along.
+        #[serde(default)]
+        width: Option<f32>,
+        /// From 0, not seen, to 1.
+        #[serde(default)]
+        opacity: Option<f32>,
+    },
     /// Makes a mirror image of what is selected, on the other side of the plane through the origin.
     Mirror {
         /// The plane's normal.
@@ -166,6 +201,11 @@ pub enum Ask {
 }
 
 impl Ask {
+    /// Whether live symmetry does it to the images too: what makes copies of its own does not.
+    pub(super) fn is_live(&self) -> bool {
+        !matches!(self, Self::Mirror { .. } | Self::Around { .. })
+    }
+
     /// Whether what it makes is selected afterwards.
     pub(super) fn selects_new(&self) -> bool {
         matches!(

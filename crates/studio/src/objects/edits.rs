@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy::math::Vec3;
-use midair_document::{Document, Edit, GroupId, Layer, LayerId, Object, ObjectId};
+use midair_document::{Colour, Document, Edit, GroupId, Kind, Layer, LayerId, Object, ObjectId};
 use midair_field::Placement;
 
 use super::extent::{corners, extent};
@@ -24,6 +24,10 @@ pub(super) enum Refused {
     Base,
     #[error("A name needs at least one letter.")]
     Name,
+    #[error("A picture has no colour and no material to take.")]
+    NoLook,
+    #[error("That is no picture: only reference images have a width and an opacity of their own.")]
+    NoPicture,
     #[error("Copies around the vertical are 2 to 64, the first included.")]
     Count,
 }
@@ -64,8 +68,47 @@ pub(super) fn edits(
             _ => format!("{verb} {} objects", ids.len()),
         };
     Ok(match ask {
-        Ask::Select { .. } | Ask::SelectAll | Ask::SelectNone | Ask::SelectOthers => {
+        Ask::Select { .. }
+        | Ask::SelectAll
+        | Ask::SelectNone
+        | Ask::SelectOthers
+        | Ask::Dropper { .. } => {
             return Err(Refused::Nothing);
+        }
+        Ask::Like { ids, of } => {
+            let ids = named(ids)?;
+            let source = document.object(*of).ok_or(Refused::Nothing)?;
+            if source.reference().is_some() {
+                return Err(Refused::NoLook);
+            }
+            let others = ids.iter().filter(|id| *id != of);
+            let edits = others.flat_map(|&id| look(id, source.colour, &source.material));
+            (format!("Look of {}", source.name), edits.collect())
+        }
+        Ask::Look {
+            ids,
+            colour,
+            material,
+        } => {
+            let ids = named(ids)?;
+            let edits = ids.iter().flat_map(|&id| look(id, *colour, material));
+            (count("Look of", &ids), edits.collect())
+        }
+        Ask::Picture { id, width, opacity } => {
+            let object = document.object(*id).ok_or(Refused::Nothing)?;
+            let mut picture = *object.reference().ok_or(Refused::NoPicture)?;
+            if let Some(width) = width {
+                if document.is_locked(*id) {
+                    return Err(Refused::Locked);
+                }
+                picture = picture.at_width(width / object.placement.scale.x.abs());
+            }
+            if let Some(opacity) = opacity.filter(|o| o.is_finite()) {
+                picture.opacity = opacity.clamp(0.0, 1.0);
+            }
+            let kind = Kind::Reference(picture);
+            let name = format!("Change {}", object.name);
+            (name, vec![Edit::SetKind { id: *id, kind }])
         }
         Ask::Duplicate => {
             let ids = named(&[])?;
@@ -318,6 +361,14 @@ pub(super) fn edits(
 
 fn each(ids: &[ObjectId], edit: impl Fn(ObjectId) -> Edit) -> Vec<Edit> {
     ids.iter().map(|&id| edit(id)).collect()
+}
+
+fn look(id: ObjectId, colour: Option<Colour>, material: &Option<String>) -> [Edit; 2] {
+    let material = material.clone();
+    [
+        Edit::SetColour { id, colour },
+        Edit::SetMaterial { id, material },
+    ]
 }
 
 /// A new place; a result that is moved is fresh no longer.

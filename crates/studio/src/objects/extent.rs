@@ -1,12 +1,9 @@
 use bevy::math::Vec3;
-use midair_document::{Document, Kind, Object, ObjectId};
+use midair_document::{Document, Object, ObjectId};
 
 /// The corners of an object's box, in world metres; nothing where it is empty.
 pub(super) fn corners(object: &Object) -> impl Iterator<Item = Vec3> {
-    let bounds = match &object.kind {
-        Kind::Solid(recipe) => recipe.bounds(),
-        Kind::Foreign { bounds, .. } => *bounds,
-    };
+    let bounds = object.bounds();
     let affine = object.placement.affine();
     let count = if bounds.is_empty() { 0 } else { 8 };
     (0..count).map(move |i| {

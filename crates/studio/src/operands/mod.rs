@@ -15,6 +15,7 @@ pub use edits::{listed, name};
 use crate::StudioSet;
 use crate::command::Command;
 use crate::notice::Notices;
+use crate::objects::added;
 use crate::project::{Project, Selection};
 use crate::show::Drafts;
 
@@ -33,16 +34,12 @@ fn carry_out(
         let Command::Operand(ask) = command else {
             continue;
         };
-        let before = project.document().next_id();
         match edits::edits(ask, project.document()) {
             Ok((name, edits)) => {
                 drafts.clear();
-                if project.commit(name, edits, &mut notices) {
-                    let made = project.document().objects().map(|(id, _)| id);
-                    let made: Vec<_> = made.filter(|id| id.0 >= before).collect();
-                    if !made.is_empty() {
-                        selection.set_if_neq(Selection(made));
-                    }
+                let made: Vec<_> = edits.iter().filter_map(added).collect();
+                if project.commit_live(name, edits, &mut notices) && !made.is_empty() {
+                    selection.set_if_neq(Selection(made));
                 }
             }
             Err(reason) => notices.warn(reason.to_string()),

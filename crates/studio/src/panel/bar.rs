@@ -212,6 +212,14 @@ fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         "Ctrl+I",
         Command::Dialog(Dialog::Import),
     );
+    item(
+        asks,
+        ui,
+        icon::IMAGE,
+        "Reference images…",
+        "Ctrl+Shift+I",
+        Command::Dialog(Dialog::Reference),
+    );
     ui.separator();
     item(
         asks,

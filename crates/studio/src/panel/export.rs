@@ -3,8 +3,8 @@
 use bevy::math::Vec3;
 use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
-use midair_document::{Document, ObjectId};
-use midair_mesh::Unit;
+use midair_document::{Document, Object, ObjectId};
+use midair_mesh::{Unit, Up};
 
 use super::{Panel, icon};
 use crate::command::Command;
@@ -20,34 +20,54 @@ use crate::units;
 pub(super) struct Export {
     format: usize,
     unit: Option<Unit>,
+    up: Option<Up>,
     step: Option<f32>,
     /// Only what is selected.
     selected: bool,
     name: Option<String>,
 }
 
-/// Ending, name, what it is for, its own unit.
-const FORMATS: [(&str, &str, &str, Unit); 5] = [
+/// Ending, name, what it is for, its own unit and its own axis upwards.
+const FORMATS: [(&str, &str, &str, Unit, Up); 5] = [
     (
         "stl",
         "STL",
         "For printing; every slicer reads it",
         Unit::Mm,
+        Up::Z,
     ),
     (
         "3mf",
         "3MF",
         "For printing, with its unit and names",
         Unit::Mm,
+        Up::Z,
     ),
     (
         "glb",
         "GLB",
         "For viewers and engines, in one file",
         Unit::M,
+        Up::Y,
     ),
-    ("obj", "OBJ", "For other modellers, as text", Unit::M),
-    ("ply", "PLY", "For scanning and research tools", Unit::M),
+    ("obj", "OBJ", "For other modellers, as text", Unit::M, Up::Y),
+    (
+        "ply",
+        "PLY",
+        "For scanning and research tools",
+        Unit::M,
+        Up::Y,
+    ),
+];
+
+/// Axis, name, who wants it.
+const UPS: [(Up, &str, &str); 2] = [
+    (Up::Y, "Y", "As in glTF, engines and Midair itself"),
+    (
+        Up::Z,
+        "Z",
+        "As in slicers and most CAD: it stands on the print bed",
+    ),
 ];
 
 impl Panel for Export {
@@ -55,16 +75,16 @@ impl Panel for Export {
         let project = world.resource::<Project>();
         let document = project.document();
         let selection = &world.resource::<Selection>().0;
-        let (ending, _, about, own) = FORMATS[self.format];
+        let (ending, _, about, own, own_up) = FORMATS[self.format];
         ui.set_min_width(360.0);
         ui.horizontal(|ui| {
-            for (i, (_, name, about, _)) in FORMATS.iter().enumerate() {
+            for (i, (_, name, about, ..)) in FORMATS.iter().enumerate() {
                 if ui
                     .selectable_label(self.format == i, *name)
                     .on_hover_text(*about)
                     .clicked()
                 {
-                    (self.format, self.unit) = (i, None);
+                    (self.format, self.unit, self.up) = (i, None, None);
                 }
             }
         });
@@ -72,13 +92,14 @@ impl Panel for Export {
         ui.add_space(8.0);
         // One object can be written alone; several go with everything else.
         let alone = match selection.as_slice() {
-            &[id] if document.object(id).is_some() => Some(id),
+            &[id] if document.object(id).is_some_and(is_made) => Some(id),
             _ => None,
         };
         let only = alone.filter(|_| self.selected);
         let ids = chosen(document, only);
         let step = self.step.unwrap_or(document.step());
         let unit = self.unit.unwrap_or(own);
+        let up = self.up.unwrap_or(own_up);
         egui::Grid::new("export")
             .num_columns(2)
             .spacing([16.0, 8.0])
@@ -113,6 +134,16 @@ impl Panel for Export {
                     }
                 });
                 ui.end_row();
+                ui.label("Up");
+                ui.horizontal(|ui| {
+                    for (choice, name, about) in UPS {
+                        let row = ui.selectable_label(up == choice, name);
+                        if row.on_hover_text(about).clicked() {
+                            self.up = Some(choice);
+                        }
+                    }
+                });
+                ui.end_row();
                 ui.label("Fineness");
                 let (least, most) = Document::STEPS;
                 let mut millimetres = step * 1e3;
@@ -135,7 +166,9 @@ impl Panel for Export {
                 ui.end_row();
                 ui.label("Size");
                 match extent(document, ids.iter().copied()) {
-                    Some((low, high)) => ui.label(units::size(high - low, unit)),
+                    Some((low, high)) => ui
+                        .label(units::size(in_file(high - low, up), unit))
+                        .on_hover_text("Along X, Y and Z in the file"),
                     None => ui.weak("nothing to write"),
                 };
                 ui.end_row();
@@ -177,6 +210,7 @@ impl Panel for Export {
                     path,
                     step: self.step,
                     unit: self.unit,
+                    up: self.up,
                     only,
                 });
                 asks.push(close());
@@ -189,7 +223,10 @@ impl Panel for Export {
         if shown != unit
             && let Some((low, high)) = extent(document, ids.iter().copied())
         {
-            ui.weak(format!("That is {}.", units::size(high - low, shown)));
+            ui.weak(format!(
+                "That is {}.",
+                units::size(in_file(high - low, up), shown)
+            ));
         }
     }
 }
@@ -208,7 +245,21 @@ fn chosen(document: &Document, only: Option<ObjectId>) -> Vec<ObjectId> {
             .objects()
             .map(|(id, _)| id)
             .filter(|&id| document.is_visible(id))
+            .filter(|&id| document.object(id).is_some_and(is_made))
             .collect(),
+    }
+}
+
+/// What was made is written; pictures to work from are not.
+fn is_made(object: &Object) -> bool {
+    object.reference().is_none()
+}
+
+/// Width, then what the file has along Y and along Z.
+fn in_file(size: Vec3, up: Up) -> Vec3 {
+    match up {
+        Up::Y => size,
+        Up::Z => Vec3::new(size.x, size.z, size.y),
     }
 }
 

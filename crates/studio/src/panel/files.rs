@@ -8,6 +8,9 @@ use egui_file_dialog::FileDialog;
 use crate::command::{Command, Dialog};
 use crate::project::{Project, Then};
 
+/// Endings of the pictures that can be worked from.
+pub const PICTURES: [&str; 3] = ["png", "jpg", "jpeg"];
+
 /// The dialog, and what is asked with it.
 #[derive(Default)]
 pub struct Files {
@@ -42,13 +45,17 @@ impl Files {
                     vec!["glb", "gltf", "obj", "stl", "ply"],
                 )
                 .default_file_filter("Meshes: GLB, OBJ, STL, PLY"),
+            Dialog::Reference => base
+                .title("Pictures to work from")
+                .add_file_filter_extensions("Pictures: PNG, JPEG", PICTURES.into())
+                .default_file_filter("Pictures: PNG, JPEG"),
             Dialog::SaveAs => base
                 .title("Save the document as")
                 .default_file_name(&format!("{}.midair", project.title())),
         };
         match dialog {
             Dialog::Open => shown.pick_file(),
-            Dialog::Import => shown.pick_multiple(),
+            Dialog::Import | Dialog::Reference => shown.pick_multiple(),
             Dialog::SaveAs => shown.save_file(),
         }
         self.open = Some((dialog, shown));
@@ -59,7 +66,7 @@ impl Files {
         let (dialog, shown) = self.open.as_mut()?;
         shown.update(ctx);
         let chosen = match dialog {
-            Dialog::Import => shown.take_picked_multiple(),
+            Dialog::Import | Dialog::Reference => shown.take_picked_multiple(),
             Dialog::Open | Dialog::SaveAs => shown.take_picked().map(|p| vec![p]),
         };
         let closed = *shown.state() != egui_file_dialog::DialogState::Open;
@@ -72,6 +79,10 @@ impl Files {
         Some(match dialog {
             Dialog::Open => Command::Leave(Then::Open(chosen.swap_remove(0))),
             Dialog::Import => Command::Import(chosen),
+            Dialog::Reference => Command::Reference {
+                paths: chosen,
+                at: None,
+            },
             Dialog::SaveAs => {
                 let path = chosen.swap_remove(0);
                 Command::SaveAs(if has_ending(&path, &["midair"]) {
@@ -86,7 +97,8 @@ impl Files {
     }
 }
 
-fn has_ending(file: &std::path::Path, endings: &[&str]) -> bool {
+/// Whether a file's name ends in one of `endings`, in upper or lower case.
+pub fn has_ending(file: &std::path::Path, endings: &[&str]) -> bool {
     file.extension()
         .is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
 }

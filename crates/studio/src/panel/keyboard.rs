@@ -15,12 +15,14 @@ pub enum Key {
     Space,
     /// Takes the last one away.
     Erase,
+    /// Types what was copied elsewhere.
+    Paste,
     /// What is typed is accepted.
     Done,
 }
 
 const ROWS: [&str; 4] = ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm_./"];
-const LAST: [Key; 4] = [Key::Shift, Key::Space, Key::Erase, Key::Done];
+const LAST: [Key; 5] = [Key::Shift, Key::Space, Key::Paste, Key::Erase, Key::Done];
 const COLUMNS: usize = 10;
 /// The side of a key, in points.
 const SIDE: f32 = 40.0;
@@ -87,12 +89,14 @@ pub fn keyboard(ui: &mut Ui, state: &Keyboard, names: [&str; 4]) -> Option<Key> 
         });
     }
     let [press, erase, space, done] = names;
-    let width = (COLUMNS as f32 * (SIDE + GAP) - GAP - 3.0 * GAP) / LAST.len() as f32;
+    let gaps = LAST.len() as f32 * GAP;
+    let width = (COLUMNS as f32 * (SIDE + GAP) - gaps) / LAST.len() as f32;
     ui.horizontal(|ui| {
         for key in LAST {
             let text = match key {
                 Key::Shift => format!("{} ABC", icon::ARROW_FAT_UP),
                 Key::Space => format!("Space  {space}"),
+                Key::Paste => format!("{} Paste", icon::CLIPBOARD_TEXT),
                 Key::Erase => format!("{}  {erase}", icon::BACKSPACE),
                 _ => format!("{}  {done}", icon::CHECK),
             };

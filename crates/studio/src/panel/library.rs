@@ -1,7 +1,5 @@
 //! The library: pictures by category, searched as one types.
 
-use std::collections::HashMap;
-
 use bevy::prelude::World;
 use bevy_egui::egui::{
     self, Align2, Color32, ColorImage, FontId, Rect, Response, RichText, Sense, TextureHandle,
@@ -11,6 +9,7 @@ use midair_field::RecipeHash;
 use midair_library::{Component, OWN};
 
 use super::{ACCENT, Panel, icon};
+use crate::bounded::Bounded;
 use crate::command::{Command, Dialog};
 use crate::evaluate::Evaluations;
 use crate::hands::Side;
@@ -31,15 +30,28 @@ const BASIC: [&str; 8] = [
 ];
 
 /// The shelf as a panel.
-#[derive(Default)]
 pub(super) struct LibraryPanel {
     /// What is typed into the search field.
     query: String,
     /// Which category is shown.
     category: Category,
-    textures: HashMap<RecipeHash, TextureHandle>,
+    textures: Bounded<RecipeHash, TextureHandle>,
     /// The rectangle the panel had in the last frame.
     shown: Option<Rect>,
+}
+
+/// So many pictures are kept on the graphics card: more than fit on a screen.
+const TEXTURES: usize = 512;
+
+impl Default for LibraryPanel {
+    fn default() -> Self {
+        Self {
+            query: String::new(),
+            category: Category::default(),
+            textures: Bounded::new(TEXTURES),
+            shown: None,
+        }
+    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -303,7 +315,9 @@ impl LibraryPanel {
         let texture = ui
             .ctx()
             .load_texture(&component.id, image, TextureOptions::LINEAR);
-        Some(self.textures.entry(hash).or_insert(texture).id())
+        let id = texture.id();
+        self.textures.insert(hash, texture);
+        Some(id)
     }
 
     fn act(
@@ -377,7 +391,7 @@ impl LibraryPanel {
         let painter = ctx.layer_painter(layer);
         let place = Rect::from_center_size(at, Vec2::splat(DRAGGED));
         let shade = if outside { 230 } else { 120 };
-        match self.textures.get(&component.recipe.hash()) {
+        match self.textures.look(&component.recipe.hash()) {
             Some(texture) => {
                 let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                 let tint = Color32::from_white_alpha(shade);

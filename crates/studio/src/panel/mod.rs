@@ -15,15 +15,18 @@ mod notices;
 mod objects;
 mod operands;
 mod outline;
+mod palettes;
 mod properties;
 mod registry;
 mod ring;
 mod settings;
+mod snaps;
 mod style;
+mod symmetry;
 
 pub use bar::{Bar, bar};
 pub use export::triangles;
-pub use files::Files;
+pub use files::{Files, PICTURES, has_ending};
 pub use hints::{KeyNames, hints};
 pub use keyboard::{Key, Keyboard, keyboard};
 pub use notices::{STAYS, notices};
@@ -97,6 +100,30 @@ pub(crate) fn plugin(app: &mut bevy::prelude::App) {
                 in_bar: false,
             },
             export::Export::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "snaps",
+                title: "Snaps",
+                icon: icon::MAGNET,
+                dock: Dock::Window,
+                order: 30,
+                open: false,
+                in_bar: true,
+            },
+            snaps::Snaps::default(),
+        )
+        .add_panel(
+            PanelInfo {
+                id: "symmetry",
+                title: "Symmetry",
+                icon: icon::FLIP_HORIZONTAL,
+                dock: Dock::Window,
+                order: 31,
+                open: false,
+                in_bar: true,
+            },
+            symmetry::Symmetry::default(),
         )
         .add_panel(
             PanelInfo {

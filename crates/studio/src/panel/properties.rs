@@ -2,11 +2,12 @@
 
 use bevy::math::{EulerRot, Quat, Vec3};
 use bevy::prelude::World;
-use bevy_egui::egui::{self, Color32, DragValue, Ui};
-use midair_document::{Colour, Document, Object, ObjectId};
+use bevy_egui::egui::{self, DragValue, Ui};
+use midair_document::{Colour, Document, Object, ObjectId, Reference};
 use midair_field::Placement;
 use midair_mesh::Unit;
 
+use super::palettes::Palettes;
 use super::{Panel, icon, kit};
 use crate::command::Command;
 use crate::objects::{Ask, Axis, extent};
@@ -24,6 +25,9 @@ pub(super) struct Properties {
     hex: Option<String>,
     fault: Option<String>,
     around: Option<u32>,
+    palettes: Palettes,
+    /// The picture whose numbers are in hand: its width in metres, its opacity.
+    picture: Option<(ObjectId, f32, f32)>,
 }
 
 /// A place in the numbers a person reads: the chosen unit, degrees, factors.
@@ -39,7 +43,7 @@ impl Numbers {
         let (x, y, z) = placement.rotation.to_euler(EulerRot::XYZ);
         Self {
             position: placement.translation * unit.per_metre() as f32,
-            degrees: Vec3::new(x, y, z) * 180.0 / std::f32::consts::PI,
+            degrees: (Vec3::new(x, y, z) * 180.0 / std::f32::consts::PI).map(shown),
             scale: placement.scale,
         }
     }
@@ -52,6 +56,11 @@ impl Numbers {
             scale: self.scale,
         }
     }
+}
+
+/// What is less than is shown is nothing, and nothing has no sign.
+fn shown(value: f32) -> f32 {
+    if value.abs() < 5e-4 { 0.0 } else { value }
 }
 
 impl Panel for Properties {
@@ -87,7 +96,18 @@ impl Panel for Properties {
                     });
                 }
                 ui.separator();
-                self.look(ui, document, selection, first, &mut ask);
+                match (selection.as_slice(), first.reference()) {
+                    (&[id], Some(reference)) => {
+                        self.picture(ui, id, first, reference, unit, &mut ask);
+                    }
+                    (_, Some(_)) => {}
+                    (_, None) => {
+                        self.look(ui, document, selection, first, &mut ask);
+                        let kept = &world.resource::<Settings>().palettes;
+                        self.palettes.show(ui, kept, first, asks);
+                        material(ui, first, &mut ask);
+                    }
+                }
                 ui.separator();
                 self.more(ui, &mut ask);
             });
@@ -211,6 +231,10 @@ impl Properties {
                     }
                 }
             }
+            let does = "Eyedropper: take the look of another object";
+            if kit::icon_button(ui, icon::EYEDROPPER, does, false).clicked() {
+                ask.push(Ask::Dropper { on: true });
+            }
             if own.is_some()
                 && ui
                     .button(icon::ARROW_COUNTER_CLOCKWISE)
@@ -223,40 +247,82 @@ impl Properties {
         if let Some(fault) = &self.fault {
             ui.colored_label(ui.visuals().warn_fg_color, fault);
         }
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = egui::vec2(4.0, 4.0);
-            for (name, rgb) in PALETTE {
-                let swatch = egui::Button::new("")
-                    .fill(Color32::from_rgb(rgb[0], rgb[1], rgb[2]))
-                    .min_size(egui::vec2(24.0, 24.0));
-                if ui.add(swatch).on_hover_text(name).clicked() {
-                    ask.push(colour(Some(rgb)));
-                }
-            }
-        });
-        ui.horizontal(|ui| {
-            ui.label("Material");
-            let now = first.material.as_deref().unwrap_or(MATERIALS[0].id);
-            let shown = MATERIALS
-                .iter()
-                .find(|m| m.id == now)
-                .map_or(now, |m| m.name);
-            egui::ComboBox::from_id_salt("material")
-                .selected_text(shown)
-                .show_ui(ui, |ui| {
-                    for material in MATERIALS {
-                        if ui
-                            .selectable_label(material.id == now, material.name)
-                            .clicked()
-                        {
-                            ask.push(Ask::Material {
-                                ids: Vec::new(),
-                                material: Some(material.id.to_owned()),
-                            });
-                        }
+    }
+
+    /// A picture to work from: how large it is, how much is seen through it.
+    fn picture(
+        &mut self,
+        ui: &mut Ui,
+        id: ObjectId,
+        object: &Object,
+        reference: &Reference,
+        unit: Unit,
+        ask: &mut Vec<Ask>,
+    ) {
+        let scale = object.placement.scale.abs();
+        let before = (reference.size[0] * scale.x, reference.opacity);
+        let held = self.picture.filter(|(of, ..)| *of == id);
+        let (mut width, mut opacity) = held.map_or(before, |(_, w, o)| (w, o));
+        let per_metre = unit.per_metre() as f32;
+        let slope = reference.size[1] * scale.y / (reference.size[0] * scale.x);
+        let mut busy = false;
+        egui::Grid::new("picture")
+            .num_columns(2)
+            .spacing([16.0, 8.0])
+            .show(ui, |ui| {
+                let (least, most) = Reference::SIZES;
+                for (name, factor) in [("Width", 1.0), ("Height", slope)] {
+                    ui.label(name);
+                    let mut value = width * factor * per_metre;
+                    let drag = DragValue::new(&mut value)
+                        .range(least * per_metre..=most * per_metre)
+                        .speed(1e-3 * per_metre)
+                        .max_decimals(3)
+                        .suffix(format!(" {unit}"));
+                    let field = ui
+                        .add_enabled(!object.locked, drag)
+                        .on_hover_text("The other side keeps the proportion");
+                    if field.changed() && factor > 0.0 {
+                        width = value / (factor * per_metre);
                     }
+                    busy |= field.dragged() || field.has_focus();
+                    ui.end_row();
+                }
+                ui.label("Opacity");
+                let mut percent = opacity * 100.0;
+                let slider = egui::Slider::new(&mut percent, 0.0..=100.0)
+                    .suffix(" %")
+                    .fixed_decimals(0);
+                let field = ui.add(slider);
+                if field.changed() {
+                    opacity = percent / 100.0;
+                }
+                busy |= field.dragged() || field.has_focus();
+                ui.end_row();
+            });
+        let mut locked = object.locked;
+        if ui
+            .checkbox(&mut locked, "Locked: hands pass through it")
+            .changed()
+        {
+            ask.push(Ask::Locked {
+                ids: Vec::new(),
+                locked,
+            });
+        }
+        let now = (width, opacity);
+        if busy {
+            self.picture = Some((id, width, opacity));
+        } else {
+            self.picture = None;
+            if now != before {
+                ask.push(Ask::Picture {
+                    id,
+                    width: (now.0 != before.0).then_some(now.0),
+                    opacity: (now.1 != before.1).then_some(now.1),
                 });
-        });
+            }
+        }
     }
 
     fn more(&mut self, ui: &mut Ui, ask: &mut Vec<Ask>) {
@@ -306,28 +372,39 @@ impl Properties {
     }
 }
 
+/// What it is made of.
+fn material(ui: &mut Ui, first: &Object, ask: &mut Vec<Ask>) {
+    ui.horizontal(|ui| {
+        ui.label("Material");
+        let now = first.material.as_deref().unwrap_or(MATERIALS[0].id);
+        let shown = MATERIALS
+            .iter()
+            .find(|m| m.id == now)
+            .map_or(now, |m| m.name);
+        egui::ComboBox::from_id_salt("material")
+            .selected_text(shown)
+            .show_ui(ui, |ui| {
+                for material in MATERIALS {
+                    if ui
+                        .selectable_label(material.id == now, material.name)
+                        .clicked()
+                    {
+                        ask.push(Ask::Material {
+                            ids: Vec::new(),
+                            material: Some(material.id.to_owned()),
+                        });
+                    }
+                }
+            });
+    });
+}
+
 fn colour(rgb: Option<[u8; 3]>) -> Ask {
     Ask::Colour {
         ids: Vec::new(),
         colour: rgb.map(Colour),
     }
 }
-
-/// A few that go together, none of them an operand's.
-const PALETTE: [(&str, [u8; 3]); 12] = [
-    ("Chalk", [0xe9, 0xe4, 0xda]),
-    ("Stone", [0xa8, 0xa2, 0x98]),
-    ("Slate", [0x5d, 0x63, 0x6b]),
-    ("Ink", [0x2b, 0x2e, 0x35]),
-    ("Clay", [0xb0, 0x6a, 0x4c]),
-    ("Brick", [0x96, 0x3c, 0x36]),
-    ("Rose", [0xc9, 0x7f, 0x8d]),
-    ("Plum", [0x75, 0x4a, 0x72]),
-    ("Denim", [0x44, 0x5d, 0x7e]),
-    ("Lagoon", [0x4a, 0x8c, 0x93]),
-    ("Moss", [0x6f, 0x7d, 0x46]),
-    ("Straw", [0xcf, 0xb4, 0x74]),
-];
 
 fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
@@ -353,6 +430,19 @@ mod tests {
         for bad in ["", "#12", "#gggggg", "c040301", "ééé"] {
             assert_eq!(parse_hex(bad), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn nothing_has_no_sign() {
+        let turned = Placement {
+            rotation: Quat::from_euler(EulerRot::XYZ, -1e-7, -0.0, 1e-9),
+            ..Placement::IDENTITY
+        };
+        let degrees = Numbers::of(&turned, Unit::Mm).degrees;
+        for d in degrees.to_array() {
+            assert!(d == 0.0 && d.is_sign_positive(), "{degrees}");
+        }
+        assert_eq!(shown(-14.9999), -14.9999);
     }
 
     #[test]

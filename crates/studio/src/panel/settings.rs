@@ -9,19 +9,21 @@ use crate::command::Command;
 use crate::settings::Settings;
 
 /// Parts that are remembered rather than set.
-const REMEMBERED: [&str; 2] = ["help", "files"];
+const REMEMBERED: [&str; 3] = ["help", "files", "palettes"];
 
 /// What one chooses from.
-const CHOICES: [(&str, &[&str]); 2] = [
+const CHOICES: [(&str, &[&str]); 3] = [
     ("look.room", &["Dusk", "Day", "Paper"]),
     ("units.length", &["mm", "cm", "m", "inch"]),
+    ("symmetry.mirror", &["None", "X", "Y", "Z"]),
 ];
 
 /// Bounds of numbers that have sensible ones.
-const RANGES: [(&str, f64, f64); 3] = [
+const RANGES: [(&str, f64, f64); 4] = [
     ("look.interface_scale", 0.5, 3.0),
     ("snap.grid.step", 0.001, 1.0),
     ("snap.angle.step", 1.0, 90.0),
+    ("symmetry.count", 1.0, 64.0),
 ];
 
 #[derive(Default)]
@@ -194,6 +196,10 @@ fn label(key: &str) -> String {
         "look.motion" => "Things ease into their places".to_owned(),
         "hands.left_handed" => "The left hand leads".to_owned(),
         "units.length" => "Lengths in".to_owned(),
+        "look.orthographic" => "Without perspective".to_owned(),
+        "symmetry.mirror" => "Mirror across the plane of".to_owned(),
+        "symmetry.count" => "How many around the vertical".to_owned(),
+        "symmetry.planes" => "Show the planes".to_owned(),
         "preview.on" => "Show the result while operands are marked".to_owned(),
         _ => {
             let rest = key.split_once('.').map_or(key, |(_, rest)| rest);

@@ -23,6 +23,7 @@ pub use shelf::Shelf;
 pub use thumbnails::{Picture, Thumbnails};
 
 use crate::notice::Notices;
+use crate::symmetry::{Image, spread};
 
 /// What is selected, by every mode alike.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -80,6 +81,8 @@ pub struct Project {
     work: PathBuf,
     /// What is not saved was given up by the person: its journal goes with it.
     give_up: bool,
+    /// The images of live symmetry.
+    images: Vec<Image>,
 }
 
 impl Project {
@@ -90,6 +93,7 @@ impl Project {
             path,
             work,
             give_up: false,
+            images: Vec::new(),
         }
     }
 
@@ -139,6 +143,28 @@ impl Project {
             notices.warn(reason.to_string());
         }
         self.history.committed() != before
+    }
+
+    /// The same under the live symmetry: what happens to objects happens to their images, in the same
+    /// step (see [`symmetry`](crate::symmetry)).
+    pub fn commit_live(
+        &mut self,
+        name: impl Into<String>,
+        edits: impl IntoIterator<Item = Edit>,
+        notices: &mut Notices,
+    ) -> bool {
+        let edits = edits.into_iter().collect();
+        let edits = spread(self.document(), edits, &self.images);
+        self.commit(name, edits, notices)
+    }
+
+    /// The images that live symmetry makes of everything: none while it is off.
+    pub fn images(&self) -> &[Image] {
+        &self.images
+    }
+
+    pub(crate) fn set_images(&mut self, images: Vec<Image>) {
+        self.images = images;
     }
 
     /// One step back; what it was called.

@@ -1,6 +1,5 @@
 //! Pictures of the library's components: drawn off the frame when first looked at, kept on disk.
 
-use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -11,6 +10,8 @@ use bevy::tasks::AsyncComputeTaskPool;
 use midair_field::{Recipe, RecipeHash};
 use midair_library::Volumes;
 use midair_solid::Thumbnail;
+
+use crate::bounded::Bounded;
 
 /// Pixels along each side.
 pub const SIZE: usize = 128;
@@ -34,10 +35,21 @@ pub enum Picture {
 #[derive(Resource, Clone, Default)]
 pub struct Thumbnails(Arc<Mutex<Shelf>>);
 
-#[derive(Default)]
+/// So many are kept in memory, 64 KiB each: several screens full.
+const KEPT: usize = 512;
+
 struct Shelf {
-    pictures: HashMap<RecipeHash, Picture>,
+    pictures: Bounded<RecipeHash, Picture>,
     drawing: usize,
+}
+
+impl Default for Shelf {
+    fn default() -> Self {
+        Self {
+            pictures: Bounded::new(KEPT),
+            drawing: 0,
+        }
+    }
 }
 
 impl Thumbnails {

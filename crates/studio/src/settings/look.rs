@@ -20,6 +20,8 @@ pub struct LookSettings {
     pub room: RoomKind,
     /// Whether edges of triangles are drawn.
     pub wireframe: bool,
+    /// Whether what is far is as large as what is near.
+    pub orthographic: bool,
     /// Whether what appears and snaps eases in; without it, it is there at once.
     pub motion: bool,
     /// Panels and text, as a multiple of their usual size.
@@ -31,6 +33,7 @@ impl Default for LookSettings {
         Self {
             room: RoomKind::default(),
             wireframe: false,
+            orthographic: false,
             motion: true,
             interface_scale: 1.0,
         }

@@ -9,6 +9,7 @@ mod hands;
 mod help;
 mod keep;
 mod look;
+mod palettes;
 mod patch;
 mod preview;
 mod shelf;
@@ -25,6 +26,7 @@ pub use hands::HandsSettings;
 pub use help::{HelpSettings, Lesson, Progress};
 pub use keep::{KeepSettingsPlugin, replace_file};
 pub use look::{LookSettings, RoomKind};
+pub use palettes::{OwnPalette, PaletteSettings, Swatch};
 pub use patch::SettingFault;
 pub use preview::PreviewSettings;
 pub use shelf::ShelfSettings;
@@ -45,6 +47,8 @@ pub struct Settings {
     pub units: UnitSettings,
     /// What a person likes and used of the library.
     pub shelf: ShelfSettings,
+    /// The colours a person has kept.
+    pub palettes: PaletteSettings,
     /// What is remembered of files.
     pub files: FileSettings,
     /// Whether results are shown ahead.

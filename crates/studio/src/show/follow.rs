@@ -21,6 +21,10 @@ use crate::project::Project;
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ObjectEntity(pub ObjectId);
 
+/// The step in which there comes to be one entity per object, where the object stands.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct ShowObjects;
+
 /// Where the entity of an object is.
 #[derive(Resource, Debug, Default)]
 pub struct ObjectMap(HashMap<ObjectId, Entity>);
@@ -70,6 +74,7 @@ pub(super) fn plugin(app: &mut App) {
             Update,
             (spawn, place, show)
                 .chain()
+                .in_set(ShowObjects)
                 .in_set(StudioSet::Rebuild)
                 .after(Deliver),
         );
@@ -179,6 +184,8 @@ fn show(
                 commands.entity(entity).insert(Mesh3d(handle));
                 made
             }
+            // Shown by a room of its own.
+            Kind::Reference(_) => continue,
             Kind::Foreign { mesh: hash, .. } => {
                 if showing.mesh == Some(*hash) {
                     continue;

@@ -11,7 +11,7 @@ use crate::hands::{Hands, Side};
 use crate::pick::Proxy;
 use crate::plane::WorkPlane;
 use crate::ruler::Ruler;
-use crate::settings::Settings;
+use crate::settings::{MirrorPlane, Settings};
 use crate::snap::{SnapPreview, Snapped};
 use crate::units::size;
 
@@ -25,13 +25,18 @@ const LINES: u32 = 20;
 /// The neutral that guides are drawn in, seen on light and dark alike.
 const GUIDE: Color = Color::srgb(0.55, 0.58, 0.66);
 
+/// What live symmetry is drawn in: the accent.
+const SYMMETRY: Color = Color::srgb(0.56, 0.48, 0.90);
+
 /// The contact shadow of one hand.
 #[derive(Component)]
 struct Contact(Side);
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Startup, spawn)
-        .add_systems(Update, (plumb, plane, snaps, ruler).in_set(StudioSet::Cue));
+    app.add_systems(Startup, spawn).add_systems(
+        Update,
+        (plumb, plane, snaps, ruler, symmetry).in_set(StudioSet::Cue),
+    );
 }
 
 fn spawn(
@@ -218,6 +223,48 @@ fn snaps(
         }
         if !words.is_empty() {
             readouts.say(placement.translation, words.join(" · "));
+        }
+    }
+}
+
+/// Half the side of what is shown of a mirror plane, in metres.
+const MIRROR: f32 = 1.0;
+
+/// The plane and the axis of live symmetry, while it is on.
+fn symmetry(mut gizmos: Gizmos, settings: Res<Settings>) {
+    let symmetry = &settings.symmetry;
+    if !symmetry.is_on() || !symmetry.planes {
+        return;
+    }
+    let colour = SYMMETRY.with_alpha(0.55);
+    let half_turn = std::f32::consts::FRAC_PI_2;
+    let turned = match symmetry.mirror {
+        MirrorPlane::None => None,
+        // Squares lie in x and y.
+        MirrorPlane::X => Some(Quat::from_rotation_y(half_turn)),
+        MirrorPlane::Y => Some(Quat::from_rotation_x(half_turn)),
+        MirrorPlane::Z => Some(Quat::IDENTITY),
+    };
+    if let Some(turned) = turned {
+        // An upright plane stands on the ground.
+        let up = if symmetry.mirror == MirrorPlane::Y {
+            0.0
+        } else {
+            MIRROR
+        };
+        let at = Isometry3d::new(Vec3::Y * up, turned);
+        gizmos.rect(at, Vec2::splat(2.0 * MIRROR), colour);
+        let cells = UVec2::splat(8);
+        let cell = Vec2::splat(0.25 * MIRROR);
+        gizmos.grid(at, cells, cell, SYMMETRY.with_alpha(0.12));
+    }
+    let count = symmetry.count.clamp(1, 64);
+    if count > 1 {
+        gizmos.line(Vec3::ZERO, Vec3::Y * 2.0 * MIRROR, colour);
+        for i in 0..count {
+            let angle = std::f32::consts::TAU * i as f32 / count as f32;
+            let spoke = Quat::from_rotation_y(angle) * Vec3::Z * MIRROR;
+            gizmos.line(Vec3::ZERO, spoke, SYMMETRY.with_alpha(0.4));
         }
     }
 }

@@ -98,6 +98,9 @@ fn paint(
         let Some(thing) = project.document().object(object.0) else {
             continue;
         };
+        if thing.reference().is_some() {
+            continue;
+        }
         let look = Look::of(thing, cue);
         let wanted = looks
             .0

@@ -2,6 +2,7 @@
 
 mod cue;
 mod follow;
+mod form;
 mod guides;
 mod material;
 mod readout;
@@ -15,7 +16,8 @@ use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
 pub(crate) use follow::display_steps;
-pub use follow::{Drawn, ObjectEntity, ObjectMap, to_bevy_mesh};
+pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, to_bevy_mesh};
+pub use form::form;
 pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, is_software};
@@ -28,6 +30,11 @@ impl Drafts {
     /// Where the hand has it now, if a hand has it.
     pub fn get(&self, object: ObjectId) -> Option<&Placement> {
         self.0.get(&object)
+    }
+
+    /// What hands move, and where they have it.
+    pub fn iter(&self) -> impl Iterator<Item = (ObjectId, &Placement)> {
+        self.0.iter().map(|(&id, placement)| (id, placement))
     }
 
     /// Moves the entity without touching the document. An unsound placement (a NaN pose) is left out.

@@ -11,14 +11,16 @@ use bevy_rapier3d::prelude::{QueryFilter, ReadRapierContext};
 use midair_document::{Kind, Object, ObjectId};
 use midair_field::Placement;
 
-pub use pull::{Pull, Snapped, box_of, snap};
+pub use pull::{Pull, Snapped, box_feet, box_of, feet, snap};
 
 use crate::StudioSet;
+use crate::evaluate::Evaluations;
 use crate::hands::{Action, Hands, Side};
 use crate::pick::Proxy;
 use crate::plane::WorkPlane;
 use crate::project::Project;
 use crate::settings::Settings;
+use crate::show::form;
 
 /// How far a surface is felt, in physical metres.
 pub const SURFACE_REACH: f32 = 0.03;
@@ -33,6 +35,7 @@ pub struct Snapper<'w, 's> {
     settings: Res<'w, Settings>,
     plane: Res<'w, WorkPlane>,
     project: Res<'w, Project>,
+    evaluations: Res<'w, Evaluations>,
     context: ReadRapierContext<'w, 's>,
     proxies: Query<'w, 's, &'static Proxy>,
     preview: ResMut<'w, SnapPreview>,
@@ -97,7 +100,12 @@ impl Snapper<'_, '_> {
             plane: &self.plane,
             reach: SURFACE_REACH / metres_per_world,
         };
-        let snapped = snap(&pull, &standing.placement, wanted, bounds, floor);
+        let form = form(&self.project, &self.evaluations, standing);
+        let feet = |at: &Placement| match &form {
+            Some(form) => feet(at, &form.positions),
+            None => box_feet(at, bounds),
+        };
+        let snapped = snap(&pull, &standing.placement, wanted, bounds, feet, floor);
         self.preview.0.push(snapped);
         snapped.placement
     }
@@ -105,13 +113,12 @@ impl Snapper<'_, '_> {
 
 /// The box of an object in its own frame, in metres before its scale.
 pub fn own_box(project: &Project, object: &Object) -> Option<(Vec3, Vec3)> {
-    let (low, high) = match &object.kind {
-        Kind::Solid(recipe) => (recipe.bounds().min, recipe.bounds().max),
-        Kind::Foreign { mesh, .. } => {
-            let bounds = project.mesh(mesh)?.bounds();
-            (bounds.min, bounds.max)
-        }
+    let bounds = match &object.kind {
+        // What is drawn is the mesh, whatever its tool says of its box.
+        Kind::Foreign { mesh, .. } => project.mesh(mesh)?.bounds(),
+        _ => object.bounds(),
     };
+    let (low, high) = (bounds.min, bounds.max);
     low.cmple(high).all().then_some((low, high))
 }
 

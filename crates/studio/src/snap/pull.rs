@@ -37,7 +37,7 @@ pub struct Snapped {
 }
 
 /// Where a thing that stood at `before` comes to rest when a hand would have it at `wanted`. `low` and
-/// `high` are its box in its own frame; `floor` says how high the highest surface is at a point,
+/// `high` are its box in its own frame, `feet` its lowest points where it stands; `floor` says how high the highest surface is at a point,
 /// between so many metres above and below it.
 ///
 /// The turn comes first, then the grid, then the surface, which has the last word on the height. What was
@@ -47,6 +47,7 @@ pub fn snap(
     before: &Placement,
     wanted: Placement,
     (low, high): (Vec3, Vec3),
+    feet: impl Fn(&Placement) -> Vec<Vec3>,
     floor: impl Fn(Vec3, f32) -> Option<f32>,
 ) -> Snapped {
     let mut snapped = Snapped {
@@ -67,7 +68,8 @@ pub fn snap(
         snapped.onto_grid(pull.plane, settings.grid.step, (low, high));
     }
     if settings.surface.on {
-        snapped.onto_surface(pull.reach, (low, high), floor);
+        let feet = feet(&snapped.placement);
+        snapped.onto_surface(pull.reach, &feet, floor);
     }
     snapped
 }
@@ -104,35 +106,67 @@ impl Snapped {
         self.grid = Some(plane.to_world(on_lines));
     }
 
+    /// It is lifted or lowered until one of its feet stands; `feet` are the lowest points of what is moved,
+    /// apart from each other.
     fn onto_surface(
         &mut self,
         reach: f32,
-        bounds: (Vec3, Vec3),
+        feet: &[Vec3],
         floor: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
-        let (low, high) = box_of(&self.placement, bounds);
-        let middle = low.midpoint(high);
-        // Under its middle and a little within its corners: it may stand on an edge.
-        let inset = 0.4 * (high - low);
-        let feet = [
-            (0.0, 0.0),
-            (-1.0, -1.0),
-            (1.0, -1.0),
-            (-1.0, 1.0),
-            (1.0, 1.0),
-        ];
-        let highest = feet
-            .into_iter()
-            .filter_map(|(x, z)| {
-                let foot = Vec3::new(middle.x + x * inset.x, low.y, middle.z + z * inset.z);
-                floor(foot, reach).map(|y| foot.with_y(y))
-            })
-            .max_by(|a, b| a.y.total_cmp(&b.y));
-        if let Some(at) = highest.filter(|at| (at.y - low.y).abs() <= reach) {
-            self.placement.translation.y += at.y - low.y;
-            self.surface = Some(Vec3::new(middle.x, at.y, middle.z));
+        let stands = feet
+            .iter()
+            .filter_map(|&foot| floor(foot, reach).map(|y| (foot.with_y(y), y - foot.y)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((at, lift)) = stands.filter(|(_, lift)| lift.abs() <= reach) {
+            self.placement.translation.y += lift;
+            self.surface = Some(at);
         }
     }
+}
+
+/// How many cells the underside is divided into along each side, to find its feet.
+const CELLS: usize = 5;
+
+/// The lowest points of a surface that stands at `placement`, one for each part of what lies below it:
+/// its feet. `points` are in its own frame.
+pub fn feet(placement: &Placement, points: &[Vec3]) -> Vec<Vec3> {
+    let affine = placement.affine();
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for &p in points {
+        let at = affine.transform_point3(p);
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let across = (high - low).max(Vec3::splat(1e-6));
+    let mut lowest = [None::<Vec3>; CELLS * CELLS];
+    for &p in points {
+        let at = affine.transform_point3(p);
+        let cell = |v: f32, low: f32, across: f32| {
+            ((v - low) / across * CELLS as f32).clamp(0.0, CELLS as f32 - 1.0) as usize
+        };
+        let cell = cell(at.x, low.x, across.x) * CELLS + cell(at.z, low.z, across.z);
+        if lowest[cell].is_none_or(|l| at.y < l.y) {
+            lowest[cell] = Some(at);
+        }
+    }
+    lowest.into_iter().flatten().collect()
+}
+
+/// The feet of what only its box is known of: under its middle and a little within its corners, since
+/// it may stand on an edge.
+pub fn box_feet(placement: &Placement, bounds: (Vec3, Vec3)) -> Vec<Vec3> {
+    let (low, high) = box_of(placement, bounds);
+    let middle = low.midpoint(high);
+    let inset = 0.4 * (high - low);
+    let feet = [
+        (0.0, 0.0),
+        (-1.0, -1.0),
+        (1.0, -1.0),
+        (-1.0, 1.0),
+        (1.0, 1.0),
+    ];
+    feet.map(|(x, z)| Vec3::new(middle.x + x * inset.x, low.y, middle.z + z * inset.z))
+        .into()
 }
 
 fn nearest(value: f32, step: f32) -> f32 {
@@ -165,6 +199,10 @@ mod tests {
 
     const CUBE: (Vec3, Vec3) = (Vec3::splat(-0.07), Vec3::splat(0.07));
 
+    fn none(_: &Placement) -> Vec<Vec3> {
+        Vec::new()
+    }
+
     fn all_on() -> SnapSettings {
         SnapSettings {
             grid: GridSnap {
@@ -185,7 +223,10 @@ mod tests {
             plane: &WorkPlane::default(),
             reach: 0.05,
         };
-        snap(&pull, &Placement::IDENTITY, wanted, CUBE, |_, _| floor)
+        let feet = |p: &Placement| box_feet(p, CUBE);
+        snap(&pull, &Placement::IDENTITY, wanted, CUBE, feet, |_, _| {
+            floor
+        })
     }
 
     #[test]
@@ -224,7 +265,7 @@ mod tests {
             reach: 0.05,
         };
         let wanted = Placement::at(Vec3::new(0.33, 0.28, 0.13));
-        let found = snap(&pull, &Placement::IDENTITY, wanted, CUBE, |_, _| None);
+        let found = snap(&pull, &Placement::IDENTITY, wanted, CUBE, none, |_, _| None);
         let at = found.placement.translation;
         assert!(at.distance(Vec3::new(0.3, 0.3, 0.11)) < 1e-5, "{at}");
     }
@@ -246,13 +287,13 @@ mod tests {
             translation: Vec3::X,
             ..before
         };
-        let found = snap(&pull, &before, wanted, CUBE, |_, _| None);
+        let found = snap(&pull, &before, wanted, CUBE, none, |_, _| None);
         assert_eq!(found.placement.rotation, slanted);
         let wanted = Placement {
             rotation: Quat::from_euler(EulerRot::YXZ, 0.8, 0.05, 0.0),
             ..before
         };
-        let found = snap(&pull, &before, wanted, CUBE, |_, _| None);
+        let found = snap(&pull, &before, wanted, CUBE, none, |_, _| None);
         let right = Quat::from_rotation_y(45_f32.to_radians());
         assert!(found.placement.rotation.angle_between(right) < 1e-3);
     }
@@ -276,6 +317,61 @@ mod tests {
     }
 
     #[test]
+    fn what_is_round_comes_to_rest_on_what_it_really_touches() {
+        let settings = SnapSettings {
+            surface: SurfaceSnap { on: true },
+            ..SnapSettings::default()
+        };
+        let pull = Pull {
+            settings: &settings,
+            plane: &WorkPlane::default(),
+            reach: 0.05,
+        };
+        // A ball beside a step: its box would come to rest on the step, which the ball does not touch.
+        let ball: Vec<Vec3> = (0..4000)
+            .map(|i| {
+                let y = 1.0 - 2.0 * (i as f32 + 0.5) / 4000.0;
+                let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
+                let r = (1.0 - y * y).sqrt();
+                0.1 * Vec3::new(r * cos, y, r * sin)
+            })
+            .collect();
+        let step = |foot: Vec3, reach: f32| {
+            let heights = if foot.x > 0.07 {
+                vec![0.0, 0.02]
+            } else {
+                vec![0.0]
+            };
+            heights
+                .into_iter()
+                .filter(|h| (foot.y - h).abs() <= reach)
+                .reduce(f32::max)
+        };
+        let bounds = (Vec3::splat(-0.1), Vec3::splat(0.1));
+        let wanted = Placement::at(Vec3::new(0.0, 0.12, 0.0));
+        let found = snap(
+            &pull,
+            &Placement::IDENTITY,
+            wanted,
+            bounds,
+            |p| feet(p, &ball),
+            step,
+        );
+        let y = found.placement.translation.y;
+        assert!((y - 0.1).abs() < 1e-3, "on the ground beside the step: {y}");
+        assert!(found.surface.is_some_and(|at| at.y == 0.0));
+        let boxed = snap(
+            &pull,
+            &Placement::IDENTITY,
+            wanted,
+            bounds,
+            |p| box_feet(p, bounds),
+            step,
+        );
+        assert!(boxed.placement.translation.y > 0.115, "its box would float");
+    }
+
+    #[test]
     fn a_click_moves_nothing_and_senseless_steps_pull_nothing() {
         let mut settings = all_on();
         let pull = Pull {
@@ -284,7 +380,7 @@ mod tests {
             reach: 0.05,
         };
         let before = Placement::at(Vec3::splat(0.123));
-        let found = snap(&pull, &before, before, CUBE, |_, _| Some(0.04));
+        let found = snap(&pull, &before, before, CUBE, none, |_, _| Some(0.04));
         assert_eq!(found.placement, before);
         for step in [0.0, -1.0, f32::NAN, f32::INFINITY] {
             settings.grid.step = step;

@@ -28,9 +28,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(First, keep_current).add_systems(
         Update,
         // Before things take their places, and before anyone asks whether hands rest.
-        reflect::reflect
-            .in_set(StudioSet::Rebuild)
-            .before(Deliver),
+        reflect::reflect.in_set(StudioSet::Rebuild).before(Deliver),
     );
     app.init_resource::<reflect::Reflected>();
 }

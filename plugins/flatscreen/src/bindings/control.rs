@@ -168,11 +168,13 @@ controls! {
         ViewCorner = "view_corner" "View across the corner",
         ResetWorld = "reset_world" "The world at its own size and place",
         Wireframe = "wireframe" "Wireframe on or off",
+        Orthographic = "orthographic" "Perspective on or off",
     }
     Exact in View {
         GizmoMove = "gizmo_move" "Handles to move by",
         GizmoTurn = "gizmo_turn" "Handles to turn by",
         GizmoScale = "gizmo_scale" "Handles to scale by",
+        Symmetry = "symmetry" "Live symmetry on or off",
         SnapGrid = "snap_grid" "Snap to the grid, on or off",
         SnapAngle = "snap_angle" "Snap to angles, on or off",
         SnapSurface = "snap_surface" "Snap to surfaces, on or off",
@@ -190,6 +192,7 @@ controls! {
         Duplicate = "duplicate" "Duplicate",
         Group = "group" "Group",
         Ungroup = "ungroup" "Ungroup",
+        Eyedropper = "eyedropper" "Eyedropper: take the look of another object",
         Hide = "hide" "Hide or show what is selected",
         ShowAll = "show_all" "Show what is hidden",
     }
@@ -200,6 +203,7 @@ controls! {
         SaveAs = "save_as" "Save as",
         Export = "export" "Export a mesh",
         Import = "import" "Import meshes",
+        Reference = "reference" "Reference images",
     }
     Panels in View {
         Library = "library" "Library",
@@ -214,6 +218,7 @@ controls! {
         Carry3 = "carry_3" "Carry it into the third mode",
         Carry4 = "carry_4" "Carry it into the fourth mode",
         Outline = "outline" "Objects",
+        Snaps = "snaps" "Snaps",
         Settings = "settings" "Settings",
         Controls = "controls" "Controls",
     }

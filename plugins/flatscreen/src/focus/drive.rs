@@ -1,7 +1,7 @@
 //! Keys and gamepad move the focus, press, slide and leave.
 
 use bevy::prelude::*;
-use bevy_egui::{EguiContext, EguiInput, PrimaryEguiContext, egui};
+use bevy_egui::{EguiClipboard, EguiContext, EguiInput, PrimaryEguiContext, egui};
 use midair_studio::{
     command::Command,
     panel::{Dock, Panels},
@@ -24,6 +24,7 @@ pub(crate) fn drive(
     panels: Res<Panels>,
     (mut focus, mut typing): (ResMut<Focus>, ResMut<Typing>),
     mut primary: Primary,
+    mut clipboard: Option<ResMut<EguiClipboard>>,
     mut commands: MessageWriter<Command>,
 ) {
     let Ok((mut context, mut input)) = primary.single_mut() else {
@@ -65,7 +66,9 @@ pub(crate) fn drive(
         focus.want(modal);
     }
     if typing.open {
-        typing.drive(&controls, focus, &mut input);
+        typing.drive(&controls, focus, &mut input, || {
+            clipboard.as_mut().and_then(|c| c.get_text())
+        });
         return;
     }
     if controls.just_pressed(Control::PanelNext) {

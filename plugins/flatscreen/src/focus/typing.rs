@@ -30,7 +30,13 @@ impl Typing {
     }
 
     /// Reads the gamepad and types into the field that has the focus.
-    pub(super) fn drive(&mut self, controls: &Controls, focus: &mut Focus, input: &mut EguiInput) {
+    pub(super) fn drive(
+        &mut self,
+        controls: &Controls,
+        focus: &mut Focus,
+        input: &mut EguiInput,
+        copied: impl FnOnce() -> Option<String>,
+    ) {
         if !focus.is_text() {
             self.open = false;
             return;
@@ -56,6 +62,7 @@ impl Typing {
         .map(|(_, key)| key);
         let chosen = controls.fired(Control::TypeKey).then_some(self.state.key());
         let keys: Vec<_> = pressed.chain(chosen).chain(self.clicked.take()).collect();
+        let mut copied = Some(copied);
         for pressed in keys {
             let tap = match pressed {
                 Key::Letter(letter) => {
@@ -64,6 +71,13 @@ impl Typing {
                 }
                 Key::Space => {
                     input.events.push(egui::Event::Text(" ".to_owned()));
+                    continue;
+                }
+                Key::Paste => {
+                    let text = copied.take().and_then(|copied| copied());
+                    if let Some(text) = text.map(|t| one_line(&t)).filter(|t| !t.is_empty()) {
+                        input.events.push(egui::Event::Paste(text));
+                    }
                     continue;
                 }
                 Key::Shift => {
@@ -82,6 +96,18 @@ impl Typing {
             self.open = false;
         }
     }
+}
+
+/// The most that is pasted at once, in letters.
+const PASTED: usize = 4096;
+
+/// What a field of one line can hold of what was copied.
+fn one_line(text: &str) -> String {
+    let letters = text
+        .trim()
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c });
+    letters.take(PASTED).collect()
 }
 
 pub(crate) fn show(
@@ -119,4 +145,16 @@ pub(crate) fn show(
         typing.clicked = shown.inner;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_pasted_is_one_line_of_bearable_length() {
+        assert_eq!(one_line("  ab\n\tcd \0"), "ab  cd  ");
+        assert_eq!(one_line(&"é".repeat(9000)).chars().count(), PASTED);
+        assert_eq!(one_line("\n \t"), "");
+    }
 }

@@ -6,15 +6,16 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
 
 use bevy::prelude::*;
-use midair_document::{Edit, Journal, MeshSpool, Object, ObjectId, Opened, open, save};
+use midair_document::{Edit, ImageHash, Journal, MeshSpool, Object, ObjectId, Opened, open, save};
 use midair_field::Recipe;
 use midair_library::Volumes;
-use midair_mesh::{MeshHash, TriMesh, Unit};
+use midair_mesh::{MeshHash, TriMesh, Unit, Up};
 use midair_solid::{ExportOptions, export};
 
 use crate::StudioSet;
 use crate::notice::Notices;
 use crate::project::{Places, Project};
+use crate::reference;
 
 mod batch;
 mod take_in;
@@ -32,7 +33,13 @@ pub(crate) enum Errand {
         path: PathBuf,
         step: Option<f32>,
         unit: Option<Unit>,
+        up: Option<Up>,
         only: Option<ObjectId>,
+    },
+    /// Read a picture to work from.
+    Reference {
+        path: PathBuf,
+        at: Option<Vec3>,
     },
     /// Fetch the meshes of a library component before it is placed.
     Place(Box<Object>),
@@ -46,6 +53,7 @@ enum Outcome {
     Saved(PathBuf, Vec<String>),
     Exported(PathBuf, usize),
     Fetched(Box<Object>, Vec<Arc<TriMesh>>),
+    Pictured(Box<Object>, Vec<u8>),
     Failed(String),
     Cancelled,
 }
@@ -174,6 +182,7 @@ impl Errands {
                 path,
                 step,
                 unit,
+                up,
                 only,
             } => {
                 let cancelled = cancelled.clone();
@@ -184,13 +193,25 @@ impl Errands {
                             return Outcome::Cancelled;
                         };
                         make_folder(&path);
-                        let options = ExportOptions { step, unit, only };
+                        let options = ExportOptions {
+                            step,
+                            unit,
+                            up,
+                            only,
+                        };
                         match export(&path, &document, &store, &*volumes, &options, &cancelled) {
                             Ok(triangles) => Outcome::Exported(path, triangles),
                             Err(_) if cancelled.load(Ordering::Relaxed) => Outcome::Cancelled,
                             Err(error) => Outcome::Failed(error.to_string()),
                         }
                     }),
+                )
+            }
+            Errand::Reference { path, at } => {
+                let spool = project.history().journal().map(Journal::spool);
+                (
+                    format!("Reading {}", name(&path)),
+                    Box::new(move || picture(&path, at, spool)),
                 )
             }
             Errand::Place(object) => {
@@ -251,11 +272,30 @@ fn fetch(object: Box<Object>, volumes: Option<Arc<Volumes>>, spool: Option<MeshS
     Outcome::Fetched(object, meshes)
 }
 
+/// Reads a picture to work from.
+fn picture(path: &std::path::Path, at: Option<Vec3>, spool: Option<MeshSpool>) -> Outcome {
+    let picture = match reference::read(path) {
+        Ok(picture) => picture,
+        Err(line) => return Outcome::Failed(line),
+    };
+    let image = ImageHash::of(&picture.bytes);
+    if let Some(spool) = &spool {
+        // A disk that is full is the journal's to report, at the commit.
+        let _ = spool.write_image(image, &picture.bytes);
+    }
+    let called = path.file_stem().map_or_else(
+        || "Picture".to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    );
+    let object = reference::object(called, image, picture.size, at);
+    Outcome::Pictured(Box::new(object), picture.bytes)
+}
+
 fn add(object: Object, project: &mut Project, notices: &mut Notices) {
     let id = ObjectId(project.document().next_id());
     let name = format!("Place {}", object.name);
     let object = object.into();
-    project.commit(name, [Edit::Add { id, object }], notices);
+    project.commit_live(name, [Edit::Add { id, object }], notices);
 }
 
 fn name(path: &std::path::Path) -> String {

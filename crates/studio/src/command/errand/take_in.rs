@@ -96,6 +96,13 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
                 add(*object, &mut project, &mut notices);
             });
         }
+        Outcome::Pictured(object, bytes) => {
+            world.resource_scope(|world, mut notices: Mut<Notices>| {
+                let mut project = world.resource_mut::<Project>();
+                project.meshes().insert_image(bytes);
+                add(*object, &mut project, &mut notices);
+            });
+        }
         Outcome::Failed(reason) => {
             world
                 .resource_mut::<Project>()

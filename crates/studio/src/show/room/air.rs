@@ -127,7 +127,7 @@ pub(super) fn cube(side: u32, levels: u32, light: impl Fn(Vec3, u32) -> Vec3) ->
         TextureDimension::D2,
         // Eight bits would show as bands in so dark a gradient.
         TextureFormat::Rgba16Float,
-        RenderAssetUsages::RENDER_WORLD,
+        RenderAssetUsages::default(),
     );
     image.texture_descriptor.mip_level_count = levels;
     image.data = Some(texels);
