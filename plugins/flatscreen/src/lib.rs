@@ -29,7 +29,7 @@ mod view;
 use bevy::prelude::*;
 use bevy_egui::{EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
 use leafwing_input_manager::plugin::InputManagerSystem;
-use midair_studio::{StudioSet, hands::WriteHands, snap::ClearGuides};
+use midair_studio::{StudioSet, hands::WriteHands, panel::Host, snap::ClearGuides};
 
 pub use gamepad::Pad;
 pub use gizmo::{Gizmo, Mode};
@@ -87,7 +87,7 @@ impl Plugin for FlatscreenPlugin {
                     gamepad::hands,
                     keys::commands,
                     exact::commands,
-                    ring::turn,
+                    ring::turn.run_if(on_screen),
                     attend,
                 )
                     .chain()
@@ -123,6 +123,11 @@ impl Plugin for FlatscreenPlugin {
                     .chain(),
             );
     }
+}
+
+/// The panels are on the screen, not in the room of a headset.
+fn on_screen(host: Res<Host>) -> bool {
+    *host == Host::Screen
 }
 
 /// Where keys go from the next frame on.

@@ -8,7 +8,7 @@ use midair_studio::{
     command::Command,
     evaluate::Evaluations,
     notice::Notices,
-    panel::{self, Bar, Dock, PanelInfo, Panels},
+    panel::{self, Bar, Dock, Host, PanelInfo, Panels},
     project::{Project, Then},
     settings::{LookSettings, Settings},
 };
@@ -169,6 +169,15 @@ fn draw(
     focus: &mut Focus,
     asks: &mut Vec<Command>,
 ) {
+    // Whoever wears a headset has them there.
+    let on_screen = *world.resource::<Host>() == Host::Screen;
+    let open_in = |panels: &Panels, dock| {
+        if on_screen {
+            panels.open_in(dock)
+        } else {
+            Vec::new()
+        }
+    };
     focus.begin(ctx);
     screen.scale = ctx.zoom_factor();
     let mut map = Map::new(ctx);
@@ -211,7 +220,7 @@ fn draw(
         (Dock::Left, egui::Panel::left("left").default_size(272.0)),
         (Dock::Right, egui::Panel::right("right").default_size(288.0)),
     ] {
-        let open = panels.open_in(dock);
+        let open = open_in(panels, dock);
         // In a narrow window the view comes first; the panels are there again when it grows.
         if !open.is_empty() && root.available_width() >= NARROW && window.y >= LOW {
             column(&mut root, side, &open, world, panels, &mut map, asks);
@@ -220,7 +229,7 @@ fn draw(
     let left = root.available_rect_before_wrap();
     let view = egui::Rect::from_min_size(left.min, left.size().max(egui::Vec2::ZERO));
     screen.view = Some(view);
-    for info in panels.open_in(Dock::Corner) {
+    for info in open_in(panels, Dock::Corner) {
         let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))
             .id(egui::Id::new(info.id))
             .title_bar(false)
@@ -236,7 +245,7 @@ fn draw(
             map.layer(info.id, shown.response.layer_id);
         }
     }
-    for info in panels.open_in(Dock::Window) {
+    for info in open_in(panels, Dock::Window) {
         let mut open = true;
         let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))
             .id(egui::Id::new(info.id))
@@ -254,7 +263,7 @@ fn draw(
             asks.push(close(&info));
         }
     }
-    for info in panels.open_in(Dock::Modal) {
+    for info in open_in(panels, Dock::Modal) {
         let shown = egui::Modal::new(egui::Id::new(info.id)).show(ctx, |ui| {
             ui.heading(format!("{}  {}", info.icon, info.title));
             ui.add_space(8.0);

@@ -2,7 +2,7 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
-use super::{Dock, Files, Panels, icon, kit};
+use super::{Dock, Files, Host, Panels, icon, kit};
 use crate::carry::in_hands;
 use crate::command::{Command, Dialog, Dialogs, Errands};
 use crate::hold::Held;
@@ -142,7 +142,10 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
     }
     if let Some((number, dialog)) = world.resource::<Dialogs>().after(state.seen) {
         state.seen = number;
-        state.files.ask(dialog, project);
+        // In a room its own host asks.
+        if *world.resource::<Host>() == Host::Screen {
+            state.files.ask(dialog, project);
+        }
     }
     asks.extend(state.files.show(ui.ctx()));
     asks

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use bevy_egui::egui::Context;
+use bevy_egui::egui::{Context, Rect, Vec2};
 use egui_file_dialog::FileDialog;
 
 use crate::command::{Command, Dialog};
@@ -10,6 +10,8 @@ use crate::project::{Project, Then};
 
 /// Endings of the pictures that can be worked from.
 pub const PICTURES: [&str; 3] = ["png", "jpg", "jpeg"];
+/// What a window has around its content, in points.
+const FRAME: Vec2 = Vec2::splat(34.0);
 
 /// The dialog, and what is asked with it.
 #[derive(Default)]
@@ -17,9 +19,29 @@ pub struct Files {
     open: Option<(Dialog, FileDialog)>,
     /// Where one was last.
     folder: Option<PathBuf>,
+    /// What the dialog fills, in points: a panel of its own in a room; `None` as a window on a screen.
+    fills: Option<Rect>,
 }
 
 impl Files {
+    /// Dialogs that fill a part of a panel, in points.
+    pub fn filling(part: Rect) -> Self {
+        Self {
+            fills: Some(part),
+            ..Self::default()
+        }
+    }
+
+    /// Whether one is open.
+    pub fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Gives the question up.
+    pub fn close(&mut self) {
+        self.open = None;
+    }
+
     /// Asks for a file.
     pub fn ask(&mut self, dialog: Dialog, project: &Project) {
         let folder = self
@@ -32,7 +54,19 @@ impl Files {
             .ancestors()
             .find(|f| f.is_dir())
             .map_or_else(|| PathBuf::from("."), Into::into);
-        let base = FileDialog::new().initial_directory(folder).as_modal(true);
+        let base = FileDialog::new().initial_directory(folder);
+        let base = match self.fills {
+            None => base.as_modal(true),
+            Some(part) => base
+                .as_modal(false)
+                .fixed_pos(part.min)
+                .default_size(part.size() - FRAME)
+                .min_size(part.size() - FRAME)
+                .max_size(part.size() - FRAME)
+                .title_bar(false)
+                .movable(false)
+                .resizable(false),
+        };
         let mut shown = match dialog {
             Dialog::Open => base
                 .title("Open a document")

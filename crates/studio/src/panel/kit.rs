@@ -20,7 +20,7 @@ pub fn icon_button(ui: &mut Ui, glyph: &str, does: &str, on: bool) -> Response {
     }
     let button = Button::new(icon)
         .selected(on)
-        .min_size(Vec2::splat(28.0))
+        .min_size(Vec2::splat(ui.spacing().interact_size.y))
         .frame_when_inactive(on);
     let response = ui.add(button).on_hover_text(does);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), does));

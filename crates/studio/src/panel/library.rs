@@ -36,6 +36,8 @@ pub(super) struct LibraryPanel {
     /// Which category is shown.
     category: Category,
     textures: Bounded<RecipeHash, TextureHandle>,
+    /// Where those pictures are: each host has its own.
+    host: Option<egui::Context>,
     /// The rectangle the panel had in the last frame.
     shown: Option<Rect>,
 }
@@ -49,6 +51,7 @@ impl Default for LibraryPanel {
             query: String::new(),
             category: Category::default(),
             textures: Bounded::new(TEXTURES),
+            host: None,
             shown: None,
         }
     }
@@ -68,6 +71,10 @@ impl Panel for LibraryPanel {
         let shelf = world.resource::<Shelf>();
         let settings = world.resource::<Settings>();
         self.shown = Some(ui.max_rect());
+        if self.host.as_ref() != Some(ui.ctx()) {
+            self.textures = Bounded::new(TEXTURES);
+            self.host = Some(ui.ctx().clone());
+        }
         ui.horizontal(|ui| {
             let search = egui::TextEdit::singleline(&mut self.query)
                 .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))

@@ -35,12 +35,23 @@ pub use registry::{AddPanel, Dock, Panel, PanelInfo, Panels};
 pub use ring::{ring, sector};
 pub use style::{ACCENT, Palette, RADIUS, UNIT, apply_style, has_fonts, install_fonts, visuals};
 
+/// Where panels, file dialogs and the ring of modes are hosted: in one place at a time.
+#[derive(bevy::prelude::Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Host {
+    /// In the window.
+    #[default]
+    Screen,
+    /// In the room, for somebody who wears a headset; the window keeps its bar.
+    Room,
+}
+
 pub use bevy_egui::egui;
 /// The one set of icons that every panel uses.
 pub use egui_phosphor::regular as icon;
 
 pub(crate) fn plugin(app: &mut bevy::prelude::App) {
     app.init_resource::<Panels>()
+        .init_resource::<Host>()
         .add_panel(
             PanelInfo {
                 id: "library",

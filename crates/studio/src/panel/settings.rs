@@ -12,14 +12,21 @@ use crate::settings::Settings;
 const REMEMBERED: [&str; 3] = ["help", "files", "palettes"];
 
 /// What one chooses from.
-const CHOICES: [(&str, &[&str]); 3] = [
+const CHOICES: [(&str, &[&str]); 4] = [
+    ("comfort.desktop", &["Mirror", "Spectator"]),
     ("look.room", &["Dusk", "Day", "Paper"]),
     ("units.length", &["mm", "cm", "m", "inch"]),
     ("symmetry.mirror", &["None", "X", "Y", "Z"]),
 ];
 
 /// Bounds of numbers that have sensible ones.
-const RANGES: [(&str, f64, f64); 4] = [
+const RANGES: [(&str, f64, f64); 10] = [
+    ("comfort.interface_scale", 0.6, 2.0),
+    ("comfort.pointer_angle", -30.0, 60.0),
+    ("comfort.haptics", 0.0, 1.0),
+    ("comfort.snap_turn", 0.0, 90.0),
+    ("comfort.vignette", 0.0, 1.0),
+    ("world.lowered", 0.0, 1.0),
     ("look.interface_scale", 0.5, 3.0),
     ("snap.grid.step", 0.001, 1.0),
     ("snap.angle.step", 1.0, 90.0),
@@ -194,6 +201,18 @@ fn label(key: &str) -> String {
     match key {
         "look.interface_scale" => "Size of panels and text".to_owned(),
         "look.motion" => "Things ease into their places".to_owned(),
+        "comfort.interface_scale" => "Size of panels in a headset".to_owned(),
+        "comfort.pointer_angle" => "Wands point down by (degrees)".to_owned(),
+        "comfort.haptics" => "Strength of pulses".to_owned(),
+        "comfort.snap_turn" => "Turn by grip and stick (degrees)".to_owned(),
+        "comfort.vignette" => "Darken the edge while the world moves".to_owned(),
+        "comfort.wrist" => "Panel on the wrist".to_owned(),
+        "comfort.labels" => "Name the buttons of a controller near the face".to_owned(),
+        "comfort.budget" => "Show the time of a frame".to_owned(),
+        "comfort.desktop" => "The window meanwhile".to_owned(),
+        "world.one_handed" => "One hand moves the world".to_owned(),
+        "world.seated" => "I sit".to_owned(),
+        "world.lowered" => "Lower the floor by (m)".to_owned(),
         "hands.left_handed" => "The left hand leads".to_owned(),
         "units.length" => "Lengths in".to_owned(),
         "look.orthographic" => "Without perspective".to_owned(),

@@ -4,6 +4,7 @@
 //! [`Command::Set`](crate::command::Command::Set) changes it, so that a session which changes a setting plays back. A
 //! session begins with the defaults, a person with what is kept in `settings.ron`.
 
+mod comfort;
 mod files;
 mod hands;
 mod help;
@@ -21,6 +22,7 @@ mod world;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use comfort::{ComfortSettings, Desktop};
 pub use files::FileSettings;
 pub use hands::HandsSettings;
 pub use help::{HelpSettings, Lesson, Progress};
@@ -59,6 +61,8 @@ pub struct Settings {
     pub symmetry: SymmetrySettings,
     /// How two hands move the world.
     pub world: WorldSettings,
+    /// What one wants in a headset.
+    pub comfort: ComfortSettings,
     /// How far one is with learning.
     pub help: HelpSettings,
 }
@@ -74,7 +78,7 @@ impl Settings {
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
-const SHAPING: &[&str] = &["snap", "hands", "symmetry"];
+const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world"];
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Settings>();

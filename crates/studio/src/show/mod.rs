@@ -20,7 +20,7 @@ pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, to_bevy_mesh};
 pub use form::form;
 pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
-pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, is_software};
+pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, headset, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

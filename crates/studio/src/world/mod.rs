@@ -4,6 +4,7 @@
 //! say in metres of the room; nothing else of the studio knows that the world was scaled, but for
 //! [`Hands::metres_per_world`].
 
+mod one_hand;
 mod pull;
 mod similarity;
 
@@ -12,6 +13,7 @@ use std::ops::RangeInclusive;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use one_hand::OneHandPull;
 pub use pull::WorldPull;
 pub use similarity::Similarity;
 
@@ -36,7 +38,16 @@ pub struct WorldView {
     /// What poses in the world are to be carried by that stay where they are in the room, since the
     /// world was moved in the frame before.
     pub carry: Option<Similarity>,
-    pull: Option<WorldPull>,
+    /// Metres that the floor of the world lies below that of the room, for somebody who sits.
+    lowered: f32,
+    pull: Option<Pull>,
+}
+
+/// What holds the world; without a pull where it was moved otherwise meanwhile, so that it is taken anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pull {
+    Both(Option<WorldPull>),
+    One(Side, Option<OneHandPull>),
 }
 
 impl Default for WorldView {
@@ -44,6 +55,7 @@ impl Default for WorldView {
         Self {
             room_from_world: Similarity::IDENTITY,
             carry: None,
+            lowered: 0.0,
             pull: None,
         }
     }
@@ -60,9 +72,27 @@ impl WorldView {
         self.room_from_world.scale
     }
 
-    /// Whether both hands hold it.
+    /// Whether hands hold it.
     pub fn is_held(&self) -> bool {
         self.pull.is_some()
+    }
+
+    /// As it was at first, at its own size.
+    fn home(&self) -> Similarity {
+        Similarity {
+            translation: Vec3::new(0.0, -self.lowered, 0.0),
+            ..Similarity::IDENTITY
+        }
+    }
+
+    /// The floor is lowered by so much, in metres of the room.
+    fn lower(&mut self, by: f32) {
+        if by != self.lowered && by.is_finite() {
+            let mut next = self.room_from_world;
+            next.translation.y += self.lowered - by;
+            self.lowered = by;
+            self.stand(next);
+        }
     }
 
     fn stand(&mut self, next: Similarity) {
@@ -89,7 +119,24 @@ pub enum WorldAsk {
         /// What stays where it is, in world metres.
         about: Vec3,
     },
+    /// Turned about the vertical of the room.
+    Turn {
+        /// To the left, seen from above.
+        degrees: f32,
+        /// What stays where it is, in world metres.
+        about: Vec3,
+    },
+    /// Upright and at its own size, its front before somebody who stands there.
+    Recentre {
+        /// Where the eyes are, in metres of the room.
+        at: Vec3,
+        /// Which way they look: radians about the vertical of the room, 0 along −Z.
+        yaw: f32,
+    },
 }
+
+/// Metres before the middle of the world at which somebody stands.
+const BEFORE: f32 = 0.6;
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<WorldView>()
@@ -108,8 +155,16 @@ fn ask(mut commands: MessageReader<Command>, mut view: ResMut<WorldView>) {
         let Command::World(ask) = command else {
             continue;
         };
+        match &mut view.bypass_change_detection().pull {
+            Some(Pull::Both(pull)) => *pull = None,
+            Some(Pull::One(_, pull)) => *pull = None,
+            None => {}
+        }
         match *ask {
-            WorldAsk::Reset => view.stand(Similarity::IDENTITY),
+            WorldAsk::Reset => {
+                let home = view.home();
+                view.stand(home);
+            }
             WorldAsk::Scale { factor, about } => {
                 let now = view.room_from_world;
                 let scale = factor.clamp(*RANGE.start(), *RANGE.end());
@@ -117,11 +172,30 @@ fn ask(mut commands: MessageReader<Command>, mut view: ResMut<WorldView>) {
                 next.translation += now.point(about) - next.point(about);
                 view.stand(next);
             }
+            WorldAsk::Turn { degrees, about } => {
+                let now = view.room_from_world;
+                let turn = Quat::from_rotation_y(degrees.to_radians());
+                let mut next = Similarity {
+                    rotation: (turn * now.rotation).normalize(),
+                    ..now
+                };
+                next.translation += now.point(about) - next.point(about);
+                view.stand(next);
+            }
+            WorldAsk::Recentre { at, yaw } => {
+                let rotation = Quat::from_rotation_y(yaw);
+                let home = view.home();
+                view.stand(Similarity {
+                    rotation,
+                    translation: at.with_y(home.translation.y) - rotation * (BEFORE * Vec3::Z),
+                    ..home
+                });
+            }
         }
     }
 }
 
-/// Both grips on nothing hold the world.
+/// Both grips on nothing hold the world; one where a person has only one to spare.
 fn pull(
     mut hands: ResMut<Hands>,
     (touch, reserved): (Res<Touch>, Res<Reserved>),
@@ -129,31 +203,66 @@ fn pull(
     settings: Res<Settings>,
     mut view: ResMut<WorldView>,
 ) {
+    let wanted = &settings.world;
+    let lowered = if wanted.seated { wanted.lowered } else { 0.0 };
+    if lowered != view.lowered {
+        view.lower(lowered);
+    }
     let both = Side::BOTH.map(|s| hands.get(s));
-    let held = both.iter().all(|h| h.held(Action::Grab) && h.tracked);
+    let grips = both.each_ref().map(|h| h.held(Action::Grab) && h.tracked);
     let cancelled = both.iter().any(|h| h.pressed(Action::Cancel));
-    if !held || cancelled {
-        if view.pull.is_some() {
-            view.pull = None;
-        }
+    let count = grips.iter().filter(|&&g| g).count();
+    let goes_on = match view.pull {
+        Some(Pull::Both(_)) => count == 2,
+        Some(Pull::One(side, _)) => count == 1 && grips[side as usize],
+        None => true,
+    };
+    if (!goes_on || cancelled) && view.pull.is_some() {
+        view.pull = None;
+    }
+    if cancelled {
         return;
     }
     let room = view.room_from_world;
-    let [left, right] = both.map(|h| room.point(h.pose.position));
+    let poses = both.map(|h| room.pose(&h.pose));
+    let [left, right] = poses.map(|p| p.position);
     match view.pull {
         None => {
-            let begins = both.iter().any(|h| h.pressed(Action::Grab));
+            let begins = Side::BOTH
+                .into_iter()
+                .find(|&s| hands.get(s).pressed(Action::Grab) && grips[s as usize]);
             let empty = Side::BOTH
                 .iter()
-                .all(|&s| touch.get(s).is_none() && !reserved.has(s, Action::Grab));
-            if begins && empty && drafts.is_empty() {
-                view.pull = Some(WorldPull::new(room, left, right));
-                for side in Side::BOTH {
-                    hands.pulse(side, Haptic::Tick);
-                }
+                .all(|&s| {
+                    !grips[s as usize]
+                        || touch.get(s).is_none() && !reserved.has(s, Action::Grab)
+                });
+            let Some(side) = begins.filter(|_| empty && drafts.is_empty()) else {
+                return;
+            };
+            let holds = match count {
+                2 => &Side::BOTH[..],
+                1 if wanted.one_handed => &[side][..],
+                _ => return,
+            };
+            view.pull = Some(if count == 2 {
+                Pull::Both(Some(WorldPull::new(room, left, right)))
+            } else {
+                Pull::One(side, Some(OneHandPull::new(room, poses[side as usize])))
+            });
+            for &side in holds {
+                hands.pulse(side, Haptic::Tick);
             }
         }
-        Some(pull) => view.stand(pull.world(left, right, settings.world.tilt)),
+        Some(Pull::Both(Some(pull))) => view.stand(pull.world(left, right, wanted.tilt)),
+        Some(Pull::Both(None)) => {
+            view.pull = Some(Pull::Both(Some(WorldPull::new(room, left, right))));
+        }
+        Some(Pull::One(side, Some(pull))) => view.stand(pull.world(poses[side as usize])),
+        Some(Pull::One(side, None)) => {
+            let pull = OneHandPull::new(room, poses[side as usize]);
+            view.pull = Some(Pull::One(side, Some(pull)));
+        }
     }
 }
 
@@ -190,6 +299,16 @@ fn say(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn somebody_who_sits_has_the_floor_lower_and_it_stays_lower_when_reset() {
+        let mut view = WorldView::default();
+        view.lower(0.4);
+        assert!((view.room_from_world.translation.y + 0.4).abs() < 1e-6);
+        assert_eq!(view.home(), view.room_from_world);
+        view.lower(0.0);
+        assert_eq!(view.room_from_world, Similarity::IDENTITY);
+    }
 
     #[test]
     fn a_hand_that_stays_in_the_room_is_carried_through_the_world() {

@@ -19,6 +19,18 @@ pub enum Eye {
     Working,
     /// A picture is taken: it has the time.
     Picture,
+    /// An eye of a headset: ninety frames a second, and nothing that shimmers between two eyes.
+    Headset,
+}
+
+/// What an eye of a headset has beside its projection, which is the runtime's.
+pub fn headset() -> impl Bundle {
+    (
+        Eye::Headset,
+        Tonemapping::KhronosPbrNeutral,
+        // Four samples hold still when the head moves; smoothing afterwards and shade from depths do not.
+        Msaa::Sample4,
+    )
 }
 
 /// A camera of the room; where it stands is to be added.
@@ -38,8 +50,8 @@ pub fn camera(eye: Eye) -> impl Bundle {
 }
 
 /// Each camera gets the edges and the shade that its renderer can afford. Shade in corners is computed from
-/// depths that several samples per pixel do not have, so it goes with edges that are smoothed afterwards. (In
-/// a headset four samples and no shade would be the choice: smoothing afterwards shimmers there.)
+/// depths that several samples per pixel do not have, so it goes with edges that are smoothed afterwards. In
+/// a headset it is four samples and no shade.
 pub(super) fn afford(
     adapter: Option<Res<RenderAdapterInfo>>,
     cameras: Query<(Entity, &Eye), Added<Eye>>,
@@ -48,7 +60,7 @@ pub(super) fn afford(
     let software = adapter.is_none_or(|a| is_software(&a));
     for (entity, eye) in &cameras {
         let mut camera = commands.entity(entity);
-        if software && *eye == Eye::Working {
+        if *eye == Eye::Headset || software && *eye == Eye::Working {
             camera.insert(ShadowFilteringMethod::Hardware2x2);
         } else {
             camera.insert((

@@ -19,7 +19,7 @@ use bevy::{
 
 use crate::settings::{RoomKind, Settings};
 
-pub use eye::{Eye, FIELD_OF_VIEW, camera};
+pub use eye::{Eye, FIELD_OF_VIEW, camera, headset};
 
 /// The colours of a room.
 struct Colours {
