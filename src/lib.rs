@@ -16,10 +16,12 @@ use bevy::winit::WinitPlugin;
 use midair_csg::AssemblePlugin;
 use midair_flatscreen::FlatscreenPlugin;
 use midair_library::Volumes;
+use midair_space::SpacePlugin;
 use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
     help::GuidePlugin,
+    panel::Host,
     project::{Begin, KeepPlugin, Places},
     settings::KeepSettingsPlugin,
     show::RoomPlugin,
@@ -73,7 +75,7 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
         // The app's own lines are what a person should see.
         filter: format!(
-            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn{}",
+            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn,midair_space=warn{}",
             // Without a window the command itself says what was noticed, once.
             if stage == Stage::Window { "" } else { ",midair_studio::notice=off" }
         ),
@@ -101,6 +103,8 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
             app.add_plugins((
                 RoomPlugin,
                 FlatscreenPlugin,
+                // After it: the panels in a room are drawn by what it brings.
+                SpacePlugin,
                 GuidePlugin,
                 KeepPlugin,
                 KeepSettingsPlugin,
@@ -115,4 +119,12 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         Stage::Bare => {}
     }
     app
+}
+
+/// The app as somebody in a headset has it, whatever its hands come from: panels, wands and labels are in the room.
+pub fn wear(app: &mut App) {
+    if !app.is_plugin_added::<SpacePlugin>() {
+        app.add_plugins(SpacePlugin);
+    }
+    app.insert_resource(Host::Room);
 }

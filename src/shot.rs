@@ -4,16 +4,18 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
-use bevy::camera::RenderTarget;
+use bevy::camera::{ClearColorConfig, RenderTarget, Viewport};
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::renderer::RenderDevice;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use midair_csg::Preview;
+use midair_space::Stance;
+use midair_space::room::Root;
 use midair_studio::command::Command;
 use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::project::Project;
-use midair_studio::show::{Eye, camera};
+use midair_studio::show::{Eye, camera, headset};
 
 /// How long a picture may take: a software renderer compiles its shaders first.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -22,8 +24,23 @@ const PATIENCE: Duration = Duration::from_secs(120);
 #[derive(Resource, Default)]
 struct Taken(Option<Image>);
 
+/// Who looks at what is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SeenBy {
+    /// A camera that frames the work.
+    Camera,
+    /// Two eyes of somebody who wears a headset, side by side.
+    Headset,
+}
+
+/// Of the eyes, in metres.
+const APART: f32 = 0.064;
+/// Of the view of one eye, in pixels and radians of its height.
+const ONE_EYE: UVec2 = UVec2::new(1280, 1280);
+const HEADSET_VIEW: f32 = 1.45;
+
 /// Draws what the session made, without a window, and saves it.
-pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
+pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()> {
     if app.world().get_resource::<RenderDevice>().is_none() {
         bail!(
             "{} was not drawn: no graphics driver was found. Install Mesa's software one \
@@ -31,26 +48,38 @@ pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
             file.display()
         );
     }
+    let size = match seen_by {
+        SeenBy::Camera => UVec2::new(1280, 720),
+        SeenBy::Headset => ONE_EYE * UVec2::new(2, 1),
+    };
     let target = {
         let mut images = app.world_mut().resource_mut::<Assets<Image>>();
         images.add(Image::new_target_texture(
-            1280,
-            720,
+            size.x,
+            size.y,
             TextureFormat::Rgba8UnormSrgb,
             None,
         ))
     };
-    let view = frame_all(app.world());
-    app.world_mut().spawn((
-        camera(Eye::Picture),
-        RenderTarget::from(target.clone()),
-        view,
-    ));
+    match seen_by {
+        SeenBy::Camera => {
+            let view = frame_all(app.world());
+            app.world_mut().spawn((
+                camera(Eye::Picture),
+                RenderTarget::from(target.clone()),
+                view,
+            ));
+        }
+        SeenBy::Headset => eyes(app.world_mut(), &target),
+    }
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
     app.insert_resource(Delivery::AsTheyCome);
     let began = Instant::now();
     let mut frames = 0;
-    while frames < 8 || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
+    while frames < 8
+        // Panels open, and are drawn once the renderer has what it needs.
+        || (seen_by == SeenBy::Headset && (frames < 60 || began.elapsed() < Duration::from_secs(4)))
+        || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
     {
         app.update();
         frames += 1;
@@ -73,6 +102,51 @@ pub(crate) fn picture(app: &mut App, file: &Path) -> Result<()> {
                 file.display(),
                 PATIENCE.as_secs()
             );
+        }
+    }
+}
+
+/// Two eyes where the head is.
+fn eyes(world: &mut World, target: &Handle<Image>) {
+    let stance = *world.resource::<Stance>();
+    let root = world
+        .query_filtered::<Entity, With<Root>>()
+        .single(world)
+        .ok();
+    for (i, side) in [-0.5, 0.5].into_iter().enumerate() {
+        let at = stance.head.position + stance.head.rotation * (side * APART * Vec3::X);
+        let mut eye = world.spawn((
+            Camera3d::default(),
+            headset(),
+            Camera {
+                order: i as isize,
+                viewport: Some(Viewport {
+                    physical_position: UVec2::new(i as u32 * ONE_EYE.x, 0),
+                    physical_size: ONE_EYE,
+                    ..default()
+                }),
+                clear_color: if i == 0 {
+                    ClearColorConfig::Default
+                } else {
+                    ClearColorConfig::None
+                },
+                ..default()
+            },
+            Projection::Perspective(PerspectiveProjection {
+                fov: HEADSET_VIEW,
+                near: 0.05,
+                ..default()
+            }),
+            RenderTarget::from(target.clone()),
+            Transform {
+                translation: at,
+                rotation: stance.head.rotation,
+                scale: Vec3::ONE,
+            },
+        ));
+        // As a headset's: it goes through the world with the room.
+        if let Some(root) = root {
+            eye.insert(ChildOf(root));
         }
     }
 }

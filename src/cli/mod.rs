@@ -101,6 +101,9 @@ pub struct Play {
     /// Save a picture at the end
     #[arg(long, value_name = "FILE.png")]
     shot: Option<PathBuf>,
+    /// That picture as two eyes of a headset see it, with hands and panels, side by side
+    #[arg(long, requires = "shot", hide = true)]
+    in_headset: bool,
     /// Write what happened as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,

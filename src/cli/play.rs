@@ -10,7 +10,7 @@ use midair_studio::evaluate::Evaluations;
 use midair_studio::project::{Begin, Places, Project};
 
 use super::{Play, open};
-use crate::{Stage, app, probe, shot};
+use crate::{Stage, app, probe, shot, wear};
 
 pub(super) fn run(args: Play) -> Result<()> {
     let session = Session::load(&args.session)?;
@@ -42,6 +42,9 @@ pub(super) fn run(args: Play) -> Result<()> {
     };
     let mut app = app(stage, Places::of_user()?, begin);
     app.add_plugins(PlayerPlugin);
+    if args.in_headset {
+        wear(&mut app);
+    }
     if let Some(record) = &args.record {
         app.add_plugins(RecorderPlugin::create(record, session.title())?);
     }
@@ -85,7 +88,12 @@ pub(super) fn run(args: Play) -> Result<()> {
             .with_context(|| format!("{} was not written", file.display()))?;
     }
     if let Some(file) = &args.shot {
-        shot::picture(&mut app, file)?;
+        let seen_by = if args.in_headset {
+            shot::SeenBy::Headset
+        } else {
+            shot::SeenBy::Camera
+        };
+        shot::picture(&mut app, file, seen_by)?;
     }
     Ok(())
 }

@@ -18,6 +18,7 @@ mod oracle;
 mod pad_session;
 mod preview;
 mod references;
+mod room;
 mod sequence;
 mod shapes;
 mod small;

@@ -33,6 +33,11 @@ pub struct Studio {
 impl Studio {
     /// An empty studio at a coarse step, hands away from everything.
     pub fn new() -> Self {
+        Self::with(|_| {})
+    }
+
+    /// The same, with more in it.
+    pub fn with(prepare: impl FnOnce(&mut App)) -> Self {
         let home = tempfile::tempdir().unwrap();
         let mut app = app(Stage::Bare, Places::below(home.path()), Begin::default());
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_nanos(
@@ -44,6 +49,7 @@ impl Studio {
             about: "Nothing",
             order: 90,
         });
+        prepare(&mut app);
         app.finish();
         app.cleanup();
         let mut studio = Self { app, home };
