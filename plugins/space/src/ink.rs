@@ -10,7 +10,7 @@ use bevy::reflect::TypePath;
 use bevy::render::render_resource::{
     AsBindGroup, CompareFunction, RenderPipelineDescriptor, SpecializedMeshPipelineError,
 };
-use bevy::shader::ShaderRef;
+use bevy::shader::{Shader, ShaderRef};
 
 const SHADER: Handle<Shader> = uuid_handle!("8a0b52cf-4c3b-4a0e-9d8c-0f6a6f0c2e11");
 

@@ -4,14 +4,11 @@ use std::mem;
 
 use bevy::prelude::*;
 use midair_studio::command::{Command, Dialogs};
-use midair_studio::evaluate::Evaluations;
 use midair_studio::hands::{Hands, Haptic};
-use midair_studio::notice::Notices;
 use midair_studio::panel::{self, Dock, Host, Panels, egui};
-use midair_studio::project::{Project, Recoverables, Selection, Shelf, Thumbnails};
+use midair_studio::project::{Project, Recoverables, Selection, Shelf};
 use midair_studio::settings::Settings;
-use midair_studio::tools::{Hints, Tools};
-use midair_studio::world::WorldView;
+use midair_studio::tools::Tools;
 
 use super::content::{self, Shown, Stage, TALLEST};
 use super::picture::{self, TEXELS};
@@ -197,13 +194,13 @@ fn lay_out(
     let first = asks.len();
     let output = world.resource_scope(|world, mut panels: Mut<Panels>| {
         let mut stage = Stage {
-            world,
+            world: &*world,
             panels: panels.bypass_change_detection(),
             files: &mut boards.files,
             keyboard: &boards.keyboard,
             page: &mut boards.page,
             pinned: boards.pinned,
-            asks,
+            asks: &mut *asks,
         };
         board.ctx.run_ui(input, |ui| {
             let pass = content::show(ui, board.id, &mut stage);

@@ -236,10 +236,6 @@ impl Boards {
         self.all.get_mut(&id)
     }
 
-    pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Board> {
-        self.all.values_mut().filter(|b| b.open)
-    }
-
     /// A press elsewhere ends the typing.
     pub(crate) fn pressed(&mut self, id: BoardId) {
         if id == BoardId::Keyboard || self.typing == Some(id) {

@@ -31,7 +31,7 @@ const TAP: f32 = 0.3;
 const MOVED: f32 = 0.015;
 
 /// What the scene gets while no board does.
-const OWN: [Action; 13] = [
+const OWN: [Action; 14] = [
     Action::Act,
     Action::Grab,
     Action::Finish,
@@ -45,6 +45,7 @@ const OWN: [Action; 13] = [
     Action::Centre,
     Action::Free,
     Action::Undo,
+    Action::Redo,
 ];
 
 /// Where a wand meets a board.
@@ -151,7 +152,7 @@ pub(crate) fn point(
         }
         if let Some(met) = wand.met {
             let began = minus(minus(down, wand.captured), wand.scene);
-            wand.captured = wand.captured | began;
+            wand.captured |= began;
             if began.has(Action::Act) {
                 hands.pulse(side, Haptic::Tick);
                 press(wand, boards, met, &hand);
@@ -159,7 +160,7 @@ pub(crate) fn point(
                 take(wand, boards, met, &hand, true);
             }
         } else {
-            wand.scene = wand.scene | minus(down, wand.captured);
+            wand.scene |= minus(down, wand.captured);
         }
         if before.has(Action::Act) && !wand.captured.has(Action::Act) {
             if let Some((board, at)) = wand.pressed.take() {
