@@ -11,7 +11,7 @@ use midair_mesh::{Report, TriMesh, check};
 use midair_solid::Solid;
 use midair_studio::command::{Command, Errands};
 use midair_studio::evaluate::Evaluations;
-use midair_studio::hands::{Action, HandsInput, Pose, Side};
+use midair_studio::hands::{Action, HandsInput, Pose, Side, WriteHands};
 use midair_studio::hold::Held;
 use midair_studio::notice::Notices;
 use midair_studio::pick::Touch;
@@ -24,6 +24,10 @@ pub const ELSEWHERE: ToolId = ToolId::new("test/elsewhere");
 
 /// Frames at 90 Hz within which no two clicks are one double click.
 const APART: usize = 45;
+
+/// What the devices say, written into the hands in every frame as a way in does.
+#[derive(Resource, Default)]
+struct Device(HandsInput);
 
 pub struct Studio {
     app: App,
@@ -48,7 +52,15 @@ impl Studio {
             name: "Elsewhere",
             about: "Nothing",
             order: 90,
-        });
+        })
+        .init_resource::<Device>()
+        .add_systems(
+            Update,
+            (|device: Res<Device>, mut input: ResMut<HandsInput>| {
+                input.set_if_neq(device.0);
+            })
+            .in_set(WriteHands),
+        );
         prepare(&mut app);
         app.finish();
         app.cleanup();
@@ -162,7 +174,8 @@ impl Studio {
     }
 
     pub fn input(&mut self) -> Mut<'_, HandsInput> {
-        self.app.world_mut().resource_mut::<HandsInput>()
+        let device = self.app.world_mut().resource_mut::<Device>();
+        device.map_unchanged(|d| &mut d.0)
     }
 
     /// The hand is there from the next frame on.

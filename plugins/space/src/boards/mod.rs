@@ -168,10 +168,12 @@ impl Board {
         texts
     }
 
-    /// The middle of the first text on it that begins so, in points.
+    /// The middle of the first text on it that begins so, or has it in it, in points.
     pub fn find(&self, text: &str) -> Option<egui::Pos2> {
-        let mut texts = self.texts().into_iter();
-        texts.find(|(t, _)| t.starts_with(text)).map(|(_, at)| at)
+        let texts = self.texts();
+        let begins = texts.iter().find(|(t, _)| t.starts_with(text));
+        let found = begins.or_else(|| texts.iter().find(|(t, _)| t.contains(text)));
+        found.map(|(_, at)| *at)
     }
 }
 
