@@ -33,6 +33,8 @@ pub(crate) enum SeenBy {
     Headset,
 }
 
+/// Frames in which panels open.
+const PANELS: u32 = 40;
 /// Of the eyes, in metres.
 const APART: f32 = 0.064;
 /// Of the view of one eye, in pixels and radians of its height.
@@ -70,16 +72,19 @@ pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()>
                 view,
             ));
         }
-        SeenBy::Headset => eyes(app.world_mut(), &target),
+        SeenBy::Headset => {
+            // Panels open and are drawn before anybody looks.
+            for _ in 0..PANELS {
+                app.update();
+            }
+            eyes(app.world_mut(), &target);
+        }
     }
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
     app.insert_resource(Delivery::AsTheyCome);
     let began = Instant::now();
     let mut frames = 0;
-    while frames < 8
-        // Panels open, and are drawn once the renderer has what it needs.
-        || (seen_by == SeenBy::Headset && (frames < 60 || began.elapsed() < Duration::from_secs(4)))
-        || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
+    while frames < 8 || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
     {
         app.update();
         frames += 1;
