@@ -1,12 +1,16 @@
 //! Midair, put together: which plugins make the app, and the command line.
 
+mod again;
 pub mod cli;
 mod device;
+mod rehearse;
 mod report;
 mod shot;
 
 use std::sync::Arc;
+use std::time::Duration;
 
+use bevy::app::ScheduleRunnerPlugin;
 use bevy::ecs::error::{FallbackErrorHandler, warn};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
@@ -17,6 +21,7 @@ use midair_csg::AssemblePlugin;
 use midair_flatscreen::FlatscreenPlugin;
 use midair_library::Volumes;
 use midair_space::SpacePlugin;
+use midair_openxr::{Headset, HeadsetPlugin};
 use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
@@ -27,6 +32,8 @@ use midair_studio::{
     show::RoomPlugin,
 };
 
+pub use again::{Again, ResumePlugin, SwitchPlugin, start_again};
+pub use rehearse::RehearsalPlugin;
 pub use report::probe;
 
 /// Every mode, on the studio.
@@ -45,6 +52,10 @@ impl Plugin for MidairPlugins {
 pub enum Stage {
     /// In a window.
     Window,
+    /// In a headset, with a window beside it.
+    Headset,
+    /// In a headset alone, where there is no display.
+    HeadsetAlone,
     /// Without a window or a graphics card.
     Bare,
     /// As in a window, but nobody sees it and no graphics card draws it: devices are written into it.
@@ -53,17 +64,43 @@ pub enum Stage {
     Picture,
 }
 
-/// The app for a stage, with `places` for the user's files, ready for its first update.
+impl Stage {
+    /// Whether a person sits there, and in front of a window.
+    fn has_window(self) -> bool {
+        matches!(self, Self::Window | Self::Headset)
+    }
+
+    /// Whether somebody works there.
+    fn is_live(self) -> bool {
+        self.has_window() || self == Self::HeadsetAlone
+    }
+}
+
+/// The app for a stage without a headset, with `places` for the user's files, ready for its first update.
 pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
+    build(stage, None, places, begin)
+}
+
+/// The app in a headset, with a `window` or without one.
+pub fn headset_app(headset: Headset, window: bool, places: Places, begin: Begin) -> App {
+    let stage = if window {
+        Stage::Headset
+    } else {
+        Stage::HeadsetAlone
+    };
+    build(stage, Some(headset), places, begin)
+}
+
+fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -> App {
     let mut app = App::new();
     let window = WindowPlugin {
-        primary_window: matches!(stage, Stage::Window | Stage::Unseen).then(|| Window {
+        primary_window: (stage.has_window() || stage == Stage::Unseen).then(|| Window {
             title: "Midair".to_owned(),
             name: Some("midair".to_owned()),
             resolution: (1280, 720).into(),
             ..default()
         }),
-        exit_condition: if stage == Stage::Window {
+        exit_condition: if stage.has_window() {
             ExitCondition::OnPrimaryClosed
         } else {
             ExitCondition::DontExit
@@ -77,11 +114,11 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
         filter: format!(
             "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn,midair_space=warn{}",
             // Without a window the command itself says what was noticed, once.
-            if stage == Stage::Window { "" } else { ",midair_studio::notice=off" }
+            if stage.is_live() { ",midair_openxr=info" } else { ",midair_studio::notice=off" }
         ),
         ..default()
     });
-    if stage != Stage::Window {
+    if !stage.has_window() {
         plugins = plugins.disable::<WinitPlugin>();
     }
     if matches!(stage, Stage::Bare | Stage::Unseen) {
@@ -93,13 +130,22 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
             ..default()
         });
     }
-    app.add_plugins(plugins);
+    let worn = headset.is_some();
+    match headset {
+        Some(headset) => headset.install(&mut app, plugins),
+        None => {
+            app.add_plugins(plugins);
+        }
+    }
+    if stage == Stage::HeadsetAlone {
+        app.add_plugins(ScheduleRunnerPlugin::run_loop(Duration::ZERO));
+    }
     app.insert_resource(Evaluations::new(Arc::new(Volumes::new(&places.library))))
         .insert_resource(places)
         .insert_resource(begin)
         .add_plugins(MidairPlugins);
     match stage {
-        Stage::Window => {
+        Stage::Window | Stage::Headset => {
             app.add_plugins((
                 RoomPlugin,
                 FlatscreenPlugin,
@@ -110,6 +156,9 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
                 KeepSettingsPlugin,
             ));
         }
+        Stage::HeadsetAlone => {
+            app.add_plugins((RoomPlugin, KeepPlugin, KeepSettingsPlugin));
+        }
         Stage::Picture => {
             app.add_plugins(RoomPlugin);
         }
@@ -117,6 +166,9 @@ pub fn app(stage: Stage, places: Places, begin: Begin) -> App {
             app.add_plugins(FlatscreenPlugin);
         }
         Stage::Bare => {}
+    }
+    if worn {
+        app.add_plugins(HeadsetPlugin);
     }
     app
 }

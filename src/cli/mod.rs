@@ -39,6 +39,12 @@ pub struct Window {
     /// Save a picture of the window after it has drawn the first solids, and quit
     #[arg(long, value_name = "FILE.png", hide = true)]
     shot: Option<PathBuf>,
+    /// Take up unsaved work at once
+    #[arg(long, hide = true)]
+    resume: bool,
+    /// Tell a test what stands, and do what it asks for, by files in a folder
+    #[arg(long, value_name = "FOLDER", hide = true)]
+    rehearse: Option<PathBuf>,
     /// How large that window is
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "shot", hide = true)]
     size: Option<(u32, u32)>,

@@ -1,42 +1,63 @@
 use std::path::Path;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use bevy::app::AppExit;
 use midair_document::{Document, MeshStore, Object};
+use midair_openxr::{Headset, Life};
 use midair_playback::{RecorderPlugin, Session, Step};
 use midair_studio::command::Command;
+use midair_studio::notice::Notices;
 use midair_studio::project::{Begin, Places};
 
 use super::{Window, open};
-use crate::{Stage, app, device, shot};
+use crate::{
+    Again, RehearsalPlugin, ResumePlugin, Stage, SwitchPlugin, app, device, headset_app, shot,
+    start_again,
+};
 
 pub(super) fn run(args: Window) -> Result<()> {
-    if args.vr {
-        bail!(
-            "this Midair has no headset support built in, so no headset can be used. \
-             Start it without --vr for the flat screen"
-        );
-    }
     let places = Places::of_user()?;
     let opened = match &args.file {
         Some(file) => Some(begin(file, &places)?),
         None => None,
     };
-    if !has_display() {
+    let headset = args.vr.then(Headset::open);
+    if !has_display() && !matches!(headset, Some(Ok(_))) {
+        if let Some(Err(fault)) = &headset {
+            bail!("no headset: {fault}. There is no display for the flat screen either");
+        }
         bail!(
             "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set). Start Midair on a \
              desktop, or run a session without one: midair play assets/sessions/cup.ron --export cup.stl"
         );
     }
     say_when_nothing_draws();
-    let mut app = app(
-        Stage::Window,
-        places,
-        Begin {
-            opened,
-            journal: true,
-        },
-    );
+    let start = Begin {
+        opened,
+        journal: true,
+    };
+    let mut app = match headset {
+        Some(Ok(headset)) => headset_app(headset, has_display(), places, start),
+        // Without a headset the work goes on flat, and the reason is said where it is seen.
+        Some(Err(fault)) => {
+            let mut app = app(Stage::Window, places, start);
+            let line = format!("No headset: {fault}.");
+            eprintln!("midair: {line}");
+            app.world_mut().resource_mut::<Notices>().warn(line);
+            app
+        }
+        None => app(Stage::Window, places, start),
+    };
+    let again = Again::default();
+    if !app.world().contains_resource::<Life>() {
+        app.add_plugins(SwitchPlugin(again.clone()));
+    }
+    if args.resume {
+        app.add_plugins(ResumePlugin);
+    }
+    if let Some(folder) = args.rehearse {
+        app.add_plugins(RehearsalPlugin(folder));
+    }
     device::watch(&mut app);
     if let Some(frames) = args.lose_card {
         device::lose_after(&mut app, frames);
@@ -51,7 +72,13 @@ pub(super) fn run(args: Window) -> Result<()> {
         };
         shot::window(&mut app, file, args.size, asks);
     }
-    match app.run() {
+    let ended = app.run();
+    drop(app);
+    if let Some(arguments) = again.take() {
+        return start_again(&arguments)
+            .context("Midair was not started again for the headset; start it with --vr");
+    }
+    match ended {
         AppExit::Success => Ok(()),
         AppExit::Error(code) => bail!("the window ended with status {code}"),
     }

@@ -8,3 +8,4 @@ mod meshes;
 mod place;
 mod real;
 mod sessions;
+mod steamvr;

@@ -23,7 +23,7 @@ const NAMES: [&str; 9] = [
 
 /// How long each part took, frame by frame.
 #[derive(Resource)]
-pub(crate) struct Parts {
+pub struct Parts {
     since: Instant,
     counts: bool,
     ms: [Vec<f32>; NAMES.len()],
@@ -36,9 +36,9 @@ impl Parts {
     }
 
     /// By name.
-    pub fn figures(self) -> BTreeMap<String, FrameTimes> {
-        let each = NAMES.iter().zip(self.ms);
-        each.map(|(name, ms)| ((*name).to_owned(), FrameTimes::of(ms)))
+    pub fn figures(&self) -> BTreeMap<String, FrameTimes> {
+        let each = NAMES.iter().zip(&self.ms);
+        each.map(|(name, ms)| ((*name).to_owned(), FrameTimes::of(ms.clone())))
             .collect()
     }
 
@@ -52,7 +52,7 @@ impl Parts {
 }
 
 /// Marks between the parts of a frame. Left out unless asked for: each is a point at which the frame's systems meet.
-pub(crate) struct PartsPlugin;
+pub struct PartsPlugin;
 
 impl Plugin for PartsPlugin {
     fn build(&self, app: &mut App) {

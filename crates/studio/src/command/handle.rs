@@ -198,7 +198,8 @@ fn handle(
             | Command::Operand(_)
             | Command::Plane(_)
             | Command::Measure(_)
-            | Command::World(_) => {}
+            | Command::World(_)
+            | Command::Headset(_) => {}
         }
     }
     for warning in project.bypass_change_detection().take_warnings() {

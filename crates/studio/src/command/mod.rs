@@ -141,6 +141,8 @@ pub enum Command {
     Measure(MeasureAsk),
     /// Scales the world or puts it back.
     World(WorldAsk),
+    /// Goes into the headset, or out of it. A session has none, and leaves it be.
+    Headset(bool),
     /// Something only one tool understands: its options, its panel's buttons.
     Tool {
         /// Which tool.

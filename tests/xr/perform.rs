@@ -1,0 +1,239 @@
+//! A session, performed by controllers: what is written for hands is done by the runtime's devices.
+
+use std::sync::Arc;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+use bevy::math::{Quat, Vec2, Vec3};
+use midair_playback::{Beat, Expectation, Session, Step};
+use midair_studio::hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side};
+use serde_json::Value;
+
+use crate::stage::App;
+use crate::wire::{Controller, Rig};
+
+/// Metres from where a controller aims from to the tip of its wand.
+const WAND: f32 = 0.08;
+/// Sessions are calm; nobody watches.
+const FASTER: f64 = 2.0;
+/// Between two packets.
+const TICK: Duration = Duration::from_millis(12);
+/// What may be between a pose sent and a pose that has arrived, in metres and radians.
+const NEAR: (f32, f32) = (1e-3, 5e-3);
+
+/// Both hands and what they told the app so far.
+pub struct Performer {
+    pub rig: Rig,
+    /// What the hands are to be.
+    want: [HandFrame; 2],
+}
+
+impl Performer {
+    /// Takes hold of the devices.
+    pub fn new() -> Result<Self> {
+        let mut rig = Rig::connect()?;
+        rig.send()?;
+        Ok(Self {
+            rig,
+            want: Default::default(),
+        })
+    }
+
+    /// Performs a whole session.
+    pub fn session(&mut self, app: &mut App, session: &Arc<Session>) -> Result<()> {
+        let begin = Instant::now();
+        let mut time = 0.0;
+        for beat in session.cursor() {
+            match beat {
+                Beat::Frame(frame) => {
+                    if !frame.commands.is_empty() {
+                        self.settle(app)?;
+                        for command in &frame.commands {
+                            app.ask(command)?;
+                        }
+                    }
+                    time += frame.dt.as_secs_f64() / FASTER;
+                    let at = |e: anyhow::Error| e.context(session.place(frame.step).to_string());
+                    if self.presses(&frame.input) {
+                        self.settle(app).map_err(at)?;
+                        self.hold(&frame.input);
+                        self.rig.send()?;
+                        self.arrived(app, "buttons").map_err(at)?;
+                    } else {
+                        self.hold(&frame.input);
+                        let due = Duration::from_secs_f64(time);
+                        let ahead = due.saturating_sub(begin.elapsed());
+                        if ahead >= TICK {
+                            self.rig.send()?;
+                            sleep(ahead);
+                        }
+                    }
+                }
+                Beat::Check(step) => {
+                    self.settle(app)?;
+                    if let Step::Expect(expected) = &session.steps()[step] {
+                        let what = session.place(step).to_string();
+                        app.until(&what, 30.0, |now| met(expected, now))?;
+                    }
+                    time = begin.elapsed().as_secs_f64();
+                }
+            }
+        }
+        self.settle(app)
+    }
+
+    /// Hands go where they are to be at once, and have arrived.
+    pub fn go(&mut self, app: &mut App, side: Side, to: Pose) -> Result<()> {
+        self.want[side as usize].pose = Some(to);
+        self.write();
+        self.settle(app)
+    }
+
+    /// A button goes down or up, and has.
+    pub fn press(&mut self, app: &mut App, side: Side, action: Action, down: bool) -> Result<()> {
+        self.want[side as usize].down.set(action, down);
+        self.write();
+        self.rig.send()?;
+        self.arrived(app, "a button")
+    }
+
+    /// Waits until the app has both hands where they are.
+    pub fn settle(&mut self, app: &mut App) -> Result<()> {
+        self.rig.send()?;
+        self.arrived(app, "hands")
+    }
+
+    /// Forgets where hands were: what is sent next is new.
+    pub fn forget(&mut self) {
+        self.want = Default::default();
+    }
+
+    fn arrived(&mut self, app: &mut App, what: &str) -> Result<()> {
+        let want = self.want;
+        app.until(&format!("{what} arrive"), 20.0, |now| {
+            Side::BOTH
+                .iter()
+                .all(|&s| is_there(&want[s as usize], &now["hands"][s as usize]))
+        })?;
+        Ok(())
+    }
+
+    /// Whether this frame presses something that was not, or lets go of it.
+    fn presses(&self, input: &HandsInput) -> bool {
+        (0..2).any(|i| {
+            let (a, b) = (&self.want[i], &input.frames[i]);
+            physical(a.down) != physical(b.down) || a.swipe.is_some() != b.swipe.is_some()
+        })
+    }
+
+    fn hold(&mut self, input: &HandsInput) {
+        self.want = input.frames;
+        self.write();
+    }
+
+    fn write(&mut self) {
+        for side in Side::BOTH {
+            let hand = &mut self.rig.hands[side as usize];
+            put(side, &self.want[side as usize], hand);
+        }
+    }
+}
+
+/// What is pressed for what a session names: the library is a press of the menu's button.
+fn physical(down: ActionSet) -> ActionSet {
+    down.iter()
+        .map(|action| match action {
+            Action::Library | Action::Modes => Action::Menu,
+            other => other,
+        })
+        .collect()
+}
+
+/// One hand of a session as a controller of the Index.
+fn put(side: Side, frame: &HandFrame, hand: &mut Controller) {
+    let down = physical(frame.down);
+    if let Some(tip) = frame.pose {
+        hand.active = true;
+        hand.pose = Pose {
+            position: tip.position - tip.rotation * Vec3::NEG_Z * WAND,
+            rotation: tip.rotation,
+        };
+    } else {
+        hand.active = false;
+    }
+    hand.trigger = if down.has(Action::Act) { 1.0 } else { 0.0 };
+    hand.squeeze = if down.has(Action::Grab) { 1.0 } else { 0.0 };
+    hand.stick = [
+        (Action::Up, Vec2::Y),
+        (Action::Right, Vec2::X),
+        (Action::Down, Vec2::NEG_Y),
+        (Action::Left, Vec2::NEG_X),
+    ]
+    .into_iter()
+    .find(|(action, _)| down.has(*action))
+    .map_or(Vec2::ZERO, |(_, at)| at);
+    hand.stick_click = down.has(Action::Centre);
+    let main = side == Side::Right;
+    hand.a = down.has(if main { Action::Finish } else { Action::Undo });
+    hand.b = down.has(if main { Action::Menu } else { Action::Redo });
+    hand.pad_force = if down.has(Action::Save) { 1.0 } else { 0.0 };
+    hand.pad_touch = frame.swipe.is_some();
+    hand.pad = frame.swipe.unwrap_or(Vec2::ZERO);
+}
+
+/// Whether the app has a hand as it is to be.
+fn is_there(want: &HandFrame, is: &Value) -> bool {
+    let down: ActionSet = physical(want.down);
+    let names: Vec<_> = down.iter().map(|a| format!("{a:?}")).collect();
+    let said: Vec<_> = is["down"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
+    if names != said {
+        return false;
+    }
+    let swiped = match (want.swipe, is["swipe"].as_array()) {
+        (None, None) => true,
+        (Some(at), Some(is)) => {
+            let number = |i: usize| is[i].as_f64().unwrap_or(f64::NAN) as f32;
+            at.distance(Vec2::new(number(0), number(1))) < 1e-2
+        }
+        _ => false,
+    };
+    let Some(pose) = want.pose else {
+        return swiped && is["tracked"] == false;
+    };
+    let number = |i: usize| is["pose"][i].as_f64().unwrap_or(f64::NAN) as f32;
+    let at = Vec3::new(number(0), number(1), number(2));
+    let turn = Quat::from_xyzw(number(3), number(4), number(5), number(6));
+    swiped
+        && is["tracked"] == true
+        && at.distance(pose.position) < NEAR.0
+        && turn.angle_between(pose.rotation) < NEAR.1
+}
+
+/// Whether what a session expects is so, as far as the app tells it; the rest is checked by playing the recording.
+fn met(expected: &Expectation, now: &Value) -> bool {
+    let count = |name: &str, want: Option<usize>| {
+        want.is_none_or(|want| now[name].as_u64() == Some(want as u64))
+    };
+    let warnings = now["warnings"].as_array().map_or(0, Vec::len);
+    now["busy"] == 0
+        && count("objects", expected.objects)
+        && count("edits", expected.edits)
+        && count("undo", expected.undo)
+        && count("redo", expected.redo)
+        && expected.warnings.is_none_or(|w| w == warnings)
+}
+
+/// A session from a file; recordings are no performance.
+pub fn load(path: &str) -> Result<Arc<Session>> {
+    let session = Session::load(std::path::Path::new(path))?;
+    if session.is_recorded() {
+        bail!("{path} is a recording: write a session with steps of hands");
+    }
+    Ok(Arc::new(session))
+}

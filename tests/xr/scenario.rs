@@ -1,0 +1,103 @@
+//! Scenarios from files: a session that is performed, and what has to come of it.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use midair_studio::command::Command;
+use midair_studio::project::{Answer, Then};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::Scenario;
+use crate::perform::{Performer, load};
+use crate::stage::{App, Runtime, midair};
+
+/// `scenarios/NAME.ron`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Performance {
+    /// The session that is performed, from the repository's root.
+    session: String,
+    /// By how much the volume may differ from that of the session played without a headset.
+    #[serde(default = "two_percent")]
+    volume: f64,
+}
+
+fn two_percent() -> f64 {
+    0.02
+}
+
+/// Every scenario that has a file.
+pub fn files() -> Result<Vec<Scenario>> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir("/job/tests/xr/scenarios")? {
+        let path = entry?.path();
+        let text = fs::read_to_string(&path)?;
+        let performance: Performance =
+            ron::from_str(&text).with_context(|| path.display().to_string())?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        all.push(Scenario {
+            name: name.into_owned(),
+            run: Box::new(move |folder| perform(&performance, folder)),
+        });
+    }
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(all)
+}
+
+/// Performs it, saves, plays the recording without a headset: the same bytes, no fault, the volume of the session.
+fn perform(what: &Performance, folder: &Path) -> Result<()> {
+    let session = load(&format!("/job/{}", what.session))?;
+    let file = |name: &str| folder.join(name).display().to_string();
+    let (record, saved) = (file("recorded.ron"), file("made.midair"));
+    let mut runtime = Runtime::remote()?;
+    let mut performer = Performer::new()?;
+    let mut app = App::start(folder, &["--vr", "--record", &record])?;
+    app.until("the headset shows Midair", 60.0, |now| {
+        now["life"] == "Focused"
+    })?;
+    println!("     in focus after {:.1} s", app.age());
+    performer.session(&mut app, &session)?;
+    app.until("the work is done", 60.0, |now| now["busy"] == 0)?;
+    app.ask(&Command::SaveAs(saved.clone().into()))?;
+    app.until("the document is saved", 30.0, |now| {
+        now["busy"] == 0 && fs::metadata(&saved).is_ok()
+    })?;
+    app.ask(&Command::Leave(Then::Quit))?;
+    if app.end(5.0).is_err() {
+        app.ask(&Command::Answer(Answer::Discard))?;
+        app.end(20.0)?;
+    }
+    if !runtime.is_alive() {
+        bail!("the runtime died");
+    }
+    for name in ["played.stl", "saved.stl", "session.stl"] {
+        let _ = fs::remove_file(file(name));
+    }
+    midair(&["export", &saved, "--to", &file("saved.stl")])?;
+    midair(&["play", &record, "--export", &file("played.stl")])?;
+    if fs::read(file("saved.stl"))? != fs::read(file("played.stl"))? {
+        bail!("the recording, played without a headset, makes another mesh");
+    }
+    midair(&["check", &file("played.stl"), &saved])?;
+    let session = format!("/job/{}", what.session);
+    midair(&["play", &session, "--export", &file("session.stl")])?;
+    let (is, should) = (volume(&file("played.stl"))?, volume(&file("session.stl"))?);
+    let off = (is / should - 1.0).abs();
+    println!(
+        "     the recording exports the same bytes; no fault; volume {is:.6} m3, {:.2} % off the session's",
+        off * 100.0
+    );
+    if off > what.volume {
+        bail!("its volume is {is} m3, the session's {should} m3");
+    }
+    Ok(())
+}
+
+fn volume(mesh: &str) -> Result<f64> {
+    let report: Value = serde_json::from_str(&midair(&["check", "--json", mesh])?)?;
+    report[0]["volume"]
+        .as_f64()
+        .with_context(|| format!("{mesh}: no volume in {report}"))
+}
