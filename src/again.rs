@@ -16,19 +16,23 @@ use midair_studio::project::{Project, Recoverables};
 
 /// How the app is to start again once it has ended.
 #[derive(Resource, Clone, Default)]
-pub struct Again(Arc<Mutex<Option<Vec<OsString>>>>);
+pub struct Again {
+    start: Arc<Mutex<Option<Vec<OsString>>>>,
+    /// Arguments that stay as they are.
+    pub kept: Vec<OsString>,
+}
 
 impl Again {
     /// The arguments, if it is to.
     pub fn take(&self) -> Option<Vec<OsString>> {
-        match self.0.lock() {
+        match self.start.lock() {
             Ok(mut slot) => slot.take(),
             Err(poisoned) => poisoned.into_inner().take(),
         }
     }
 
     fn set(&self, arguments: Vec<OsString>) {
-        if let Ok(mut slot) = self.0.lock() {
+        if let Ok(mut slot) = self.start.lock() {
             *slot = Some(arguments);
         }
     }
@@ -93,7 +97,8 @@ fn switch(
         Err(std::sync::mpsc::TryRecvError::Disconnected) => {}
         Ok(Err(fault)) => notices.warn(format!("No headset: {fault}.")),
         Ok(Ok(())) => {
-            let mut arguments: Vec<OsString> = vec!["--vr".into()];
+            let mut arguments = again.kept.clone();
+            arguments.push("--vr".into());
             if project.history().is_unsaved() {
                 arguments.push("--resume".into());
             } else if let Some(path) = project.path() {

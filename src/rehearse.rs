@@ -38,10 +38,13 @@ impl Plugin for RehearsalPlugin {
             );
             return;
         };
+        let asks = self.0.join("asks.ron");
+        let heard = std::fs::metadata(&asks).map_or(0, |m| m.len());
         app.insert_resource(Talk {
             said,
-            asks: self.0.join("asks.ron"),
-            heard: 0,
+            asks,
+            // What was asked of the app before it started itself again is done.
+            heard,
             rest: String::new(),
             asked: 0,
             last: String::new(),

@@ -48,7 +48,13 @@ pub(super) fn run(args: Window) -> Result<()> {
         }
         None => app(Stage::Window, places, start),
     };
-    let again = Again::default();
+    let again = Again {
+        kept: match &args.rehearse {
+            Some(folder) => vec!["--rehearse".into(), folder.into()],
+            None => Vec::new(),
+        },
+        ..Again::default()
+    };
     if !app.world().contains_resource::<Life>() {
         app.add_plugins(SwitchPlugin(again.clone()));
     }

@@ -22,7 +22,10 @@ pub fn chair(folder: &Path) -> Result<()> {
     let mut performer = Performer::new()?;
     let mut app = App::start(folder, &["--vr", &chair])?;
     focus(&mut app)?;
-    println!("     from the command to the first frame in focus: {:.2} s", app.age());
+    println!(
+        "     from the command to the first frame in focus: {:.2} s",
+        app.focused
+    );
     app.until("the chair is drawn", 60.0, |now| now["busy"] == 0)?;
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(6) {

@@ -18,9 +18,16 @@ use crate::stage::{App, Guard, Runtime, midair, until};
 
 /// Waits until the controllers are the app's.
 pub fn focus(app: &mut App) -> Result<f64> {
-    app.until("the headset shows Midair", 60.0, |now| {
+    let seconds = app.until("the headset shows Midair", 90.0, |now| {
         now["life"] == "Focused"
-    })
+    })?;
+    let age = app.age();
+    // Where the processor draws, the first frame waits for its shaders.
+    app.until("frames are drawn", 120.0, |now| {
+        now["life"] == "Focused" && (0..2).any(|i| now["hands"][i]["profile"] != "")
+    })?;
+    app.focused = age;
+    Ok(seconds)
 }
 
 /// A cube at the right hand, which then stands in its middle.
@@ -318,4 +325,41 @@ pub fn absent(folder: &Path) -> Result<()> {
     }
     println!("     {line}");
     Ok(())
+}
+
+/// From a window: no runtime is one line and the flat screen; with one the app starts itself again in the headset, with the
+/// work and its undo list.
+pub fn from_flat(folder: &Path) -> Result<()> {
+    let _display = crate::stage::display()?;
+    let window = [("DISPLAY", ":7")];
+    let mut app = App::start_with(folder, &["--vr"], &window)?;
+    app.until("the flat screen, with a line", 90.0, |now| {
+        now["life"] == "None" && says(now, "No headset: no OpenXR runtime answers")
+    })?;
+    app.ask(&Command::ToggleLibrary)?;
+    app.ask(&Command::Place {
+        component: "solid/cube".to_owned(),
+        side: Side::Right,
+    })?;
+    app.until("a cube is there", 30.0, |now| {
+        now["objects"] == 1 && now["undo"] == 1 && now["busy"] == 0
+    })?;
+    let before = app.now["warnings"].as_array().map_or(0, Vec::len);
+    app.ask(&Command::Headset(true))?;
+    app.until("it says that there is none", 20.0, |now| {
+        now["warnings"].as_array().map_or(0, Vec::len) == before + 1
+    })?;
+    let _runtime = Runtime::remote()?;
+    let mut performer = Performer::new()?;
+    app.ask(&Command::Headset(true))?;
+    app.counts_again();
+    let seconds = focus(&mut app)?;
+    println!("     in the headset {seconds:.1} s after it was asked for");
+    app.until("the work is there, with its undo list", 30.0, |now| {
+        now["objects"] == 1 && now["undo"] == 1
+    })?;
+    performer.settle(&mut app)?;
+    app.ask(&Command::Undo)?;
+    app.until("undo works", 10.0, |now| now["objects"] == 0)?;
+    quit(&mut app)
 }

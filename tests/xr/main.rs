@@ -26,8 +26,9 @@ struct Scenario {
 
 /// Those that are no session.
 fn own() -> impl Iterator<Item = Scenario> {
-    let all: [(&str, fn(&Path) -> Result<()>); 11] = [
+    let all: [(&str, fn(&Path) -> Result<()>); 12] = [
         ("absent", life::absent),
+        ("from-flat", life::from_flat),
         ("tracking", life::tracking),
         ("alone", life::alone),
         ("attention", life::attention),

@@ -104,11 +104,6 @@ impl Performer {
         self.arrived(app, "hands")
     }
 
-    /// Forgets where hands were: what is sent next is new.
-    pub fn forget(&mut self) {
-        self.want = Default::default();
-    }
-
     fn arrived(&mut self, app: &mut App, what: &str) -> Result<()> {
         let want = self.want;
         app.until(&format!("{what} arrive"), 20.0, |now| {

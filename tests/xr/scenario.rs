@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::Scenario;
+use crate::life::focus;
 use crate::perform::{Performer, load};
 use crate::stage::{App, Runtime, midair};
 
@@ -54,10 +55,8 @@ fn perform(what: &Performance, folder: &Path) -> Result<()> {
     let mut runtime = Runtime::remote()?;
     let mut performer = Performer::new()?;
     let mut app = App::start(folder, &["--vr", "--record", &record])?;
-    app.until("the headset shows Midair", 60.0, |now| {
-        now["life"] == "Focused"
-    })?;
-    println!("     in focus after {:.1} s", app.age());
+    focus(&mut app)?;
+    println!("     in focus after {:.1} s", app.focused);
     performer.session(&mut app, &session)?;
     app.until("the work is done", 60.0, |now| now["busy"] == 0)?;
     app.ask(&Command::SaveAs(saved.clone().into()))?;

@@ -153,6 +153,8 @@ pub struct App {
     pub all: Vec<Value>,
     asked: u64,
     begun: Instant,
+    /// Seconds from its start to the first frame in focus.
+    pub focused: f64,
 }
 
 impl App {
@@ -178,6 +180,7 @@ impl App {
             .arg("--rehearse")
             .arg(&talk)
             .env("MIDAIR_HOME", folder.join("home"))
+            .env("NO_COLOR", "1")
             .envs(environment.iter().copied())
             .stdin(Stdio::null())
             .stdout(errors.try_clone()?)
@@ -193,6 +196,7 @@ impl App {
             all: Vec::new(),
             asked: 0,
             begun,
+            focused: f64::NAN,
         })
     }
 
@@ -253,11 +257,9 @@ impl App {
         Ok(())
     }
 
-    /// Ends it as a crash of the machine would.
-    pub fn kill(&mut self) -> Result<()> {
-        self.process.0.kill()?;
-        self.process.0.wait()?;
-        Ok(())
+    /// It has started itself again, and counts from the start.
+    pub fn counts_again(&mut self) {
+        self.asked = 0;
     }
 
     /// What it wrote to its log.

@@ -224,6 +224,13 @@ fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         Command::Dialog(Dialog::Reference),
     );
     ui.separator();
+    let worn = *world.resource::<Host>() == Host::Room;
+    let text = if worn {
+        "Leave the headset"
+    } else {
+        "Enter the headset"
+    };
+    item(asks, ui, icon::GOGGLES, text, "", Command::Headset(!worn));
     item(
         asks,
         ui,

@@ -6,6 +6,7 @@ use bevy::render::texture::ManualTextureViews;
 use bevy_mod_openxr::render::{XR_TEXTURE_INDEX, add_texture_view};
 use bevy_mod_openxr::resources::{OxrCurrentSessionConfig, OxrSwapchainImages, OxrViews};
 use bevy_mod_xr::camera::{XrCamera, XrProjection};
+use midair_studio::show::headset;
 
 /// Metres of the room: nearer than a hand is held to the face.
 const NEAR: f32 = 0.03;
@@ -20,6 +21,7 @@ pub(crate) fn open_views(world: &mut World) {
         let view = add_texture_view(&mut views, first, &config, eye);
         world.spawn((
             Name::new(if eye == 0 { "left eye" } else { "right eye" }),
+            headset(),
             RenderTarget::TextureView(view),
             XrCamera(eye),
             Projection::custom(XrProjection {
