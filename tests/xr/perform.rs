@@ -34,10 +34,15 @@ impl Performer {
     pub fn new() -> Result<Self> {
         let mut rig = Rig::connect()?;
         rig.send()?;
-        Ok(Self {
-            rig,
-            want: Default::default(),
-        })
+        // Both are where the rig has them.
+        let want = rig.hands.map(|hand| HandFrame {
+            pose: Some(Pose {
+                position: hand.pose.position + hand.pose.rotation * Vec3::NEG_Z * WAND,
+                rotation: hand.pose.rotation,
+            }),
+            ..HandFrame::default()
+        });
+        Ok(Self { rig, want })
     }
 
     /// Performs a whole session.
