@@ -19,10 +19,18 @@ use midair_studio::project::{Project, Recoverables};
 pub struct Again {
     start: Arc<Mutex<Option<Vec<OsString>>>>,
     /// Arguments that stay as they are.
-    pub kept: Vec<OsString>,
+    kept: Vec<OsString>,
 }
 
 impl Again {
+    /// With arguments that stay as they are.
+    pub fn keeping(kept: Vec<OsString>) -> Self {
+        Self {
+            kept,
+            ..Self::default()
+        }
+    }
+
     /// The arguments, if it is to.
     pub fn take(&self) -> Option<Vec<OsString>> {
         match self.start.lock() {

@@ -48,13 +48,10 @@ pub(super) fn run(args: Window) -> Result<()> {
         }
         None => app(Stage::Window, places, start),
     };
-    let again = Again {
-        kept: match &args.rehearse {
-            Some(folder) => vec!["--rehearse".into(), folder.into()],
-            None => Vec::new(),
-        },
-        ..Again::default()
-    };
+    let again = Again::keeping(match &args.rehearse {
+        Some(folder) => vec!["--rehearse".into(), folder.into()],
+        None => Vec::new(),
+    });
     if !app.world().contains_resource::<Life>() {
         app.add_plugins(SwitchPlugin(again.clone()));
     }
