@@ -3,12 +3,15 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use bevy::math::DVec3;
 use bevy::prelude::*;
 use midair_csg::Preview;
-use midair_document::{Kind, Object};
+use midair_document::{Kind, Object, affine};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{TriMesh, check};
-use midair_playback::{FrameTimes, ObjectReport, Report, UpdateReport};
+use midair_playback::{
+    FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport,
+};
 use midair_solid::Solid;
 use midair_studio::evaluate::Evaluations;
 use midair_studio::project::Project;
@@ -30,6 +33,8 @@ pub fn probe(world: &mut World) -> Report {
                     Kind::Solid(_) => "solid".to_owned(),
                     Kind::Foreign { ref tool, .. } => tool.clone(),
                     Kind::Reference(_) => "reference".to_owned(),
+                    Kind::Line(_) => "line".to_owned(),
+                    Kind::Stroke(_) => "stroke".to_owned(),
                 },
                 name: object.name.clone(),
                 transform: Mat4::from(object.placement.affine()).to_cols_array(),
@@ -39,8 +44,28 @@ pub fn probe(world: &mut World) -> Report {
             }
         })
         .collect();
+    let world_points = |object: &Object, points: &[DVec3]| {
+        let there = affine(&object.placement);
+        let single = |p: &DVec3| there.transform_point3(*p).as_vec3().to_array();
+        points.iter().map(single).collect::<Vec<_>>()
+    };
+    let lines = document.objects().filter_map(|(_, object)| {
+        let line = object.line()?;
+        let ends = world_points(object, &line.ends());
+        Some(LineReport {
+            a: ends[0],
+            b: ends[1],
+            kept: line.kept.len(),
+        })
+    });
+    let strokes = document.objects().filter_map(|(_, object)| {
+        let points = world_points(object, &object.stroke()?.points());
+        Some(StrokeReport { points })
+    });
     Report {
         objects,
+        lines: lines.collect(),
+        strokes: strokes.collect(),
         edits: history.committed() as usize,
         undo: history.undo_len(),
         redo: history.redo_len(),
@@ -81,5 +106,6 @@ fn mesh_of(
         }
         Kind::Foreign { mesh, .. } => project.mesh(mesh).map(|m| m.transformed(&about.affine())),
         Kind::Reference(_) => None,
+        Kind::Line(_) | Kind::Stroke(_) => None,
     }
 }

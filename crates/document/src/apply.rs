@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use midair_field::Op;
 
+use crate::drawing::DrawingFault;
 use crate::recipes::{RecipeFault, check_recipe, is_box};
 use crate::{Document, Edit, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
 
@@ -32,6 +33,9 @@ pub enum EditError {
     /// A placement that is not finite, has a zero scale or no rotation.
     #[error("an object cannot stand there: its placement is not finite, or a scale is zero")]
     Placement,
+    /// A line or stroke that is not sound.
+    #[error("it cannot be drawn: {0}")]
+    Drawing(#[from] DrawingFault),
     /// A recipe that is not sound.
     #[error("the solid cannot be taken: {0}")]
     Recipe(#[from] RecipeFault),
@@ -392,5 +396,7 @@ fn kind_fits(kind: &Kind) -> Result<(), EditError> {
         Kind::Foreign { .. } => Ok(()),
         Kind::Reference(reference) if !reference.is_sound() => Err(EditError::Reference),
         Kind::Reference(_) => Ok(()),
+        Kind::Line(line) => Ok(line.check()?),
+        Kind::Stroke(stroke) => Ok(stroke.check()?),
     }
 }

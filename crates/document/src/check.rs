@@ -75,6 +75,16 @@ impl Document {
                     ));
                 }
                 Kind::Foreign { .. } | Kind::Reference(_) => {}
+                Kind::Line(line) => {
+                    if let Err(e) = line.check() {
+                        fault(format!("{who} is no line: {e}"));
+                    }
+                }
+                Kind::Stroke(stroke) => {
+                    if let Err(e) = stroke.check() {
+                        fault(format!("{who} is no stroke: {e}"));
+                    }
+                }
             }
         }
         let mut marked = HashSet::new();

@@ -252,5 +252,6 @@ pub(crate) fn meshes_of(
             }
         }),
         Kind::Reference(_) => {}
+        Kind::Line(_) | Kind::Stroke(_) => {}
     }
 }

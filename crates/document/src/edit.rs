@@ -390,6 +390,8 @@ fn kind_bytes(kind: &Kind, seen: &mut HashSet<midair_field::RecipeHash>) -> usiz
         Kind::Foreign { tool, data, .. } => tool.len() + data.len(),
         // Its picture is the store's, once for the whole session.
         Kind::Reference(_) => 0,
+        Kind::Line(line) => line.bytes(),
+        Kind::Stroke(stroke) => stroke.bytes(),
         Kind::Solid(recipe) => {
             let mut bytes = 0;
             walk(recipe, seen, &mut |r| bytes += node_bytes(r.node()));

@@ -20,6 +20,7 @@ mod apply;
 mod autosave;
 mod check;
 mod document;
+mod drawing;
 mod edit;
 mod file;
 mod history;
@@ -34,6 +35,10 @@ mod stored;
 pub use apply::EditError;
 pub use autosave::Autosave;
 pub use document::Document;
+pub use drawing::{
+    ConstructionLine, DrawingFault, DrawnStroke, Kept, LineReading, MAX_POINTS, Relation,
+    StrokeReading, Through, affine,
+};
 pub use edit::Edit;
 pub use file::{OpenError, Opened, SaveError, may_save, open, save};
 pub use history::{History, InProgress};

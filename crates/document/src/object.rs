@@ -1,7 +1,10 @@
+use std::sync::Arc;
+
 use midair_field::{Node, Placement, Recipe};
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
 
+use crate::drawing::{ConstructionLine, DrawnStroke, around};
 use crate::{GroupId, ImageHash, LayerId};
 
 /// One thing in the scene.
@@ -102,12 +105,28 @@ impl Object {
     pub fn recipe(&self) -> Option<&Recipe> {
         match &self.kind {
             Kind::Solid(recipe) => Some(recipe),
-            Kind::Foreign { .. } | Kind::Reference(_) => None,
+            _ => None,
         }
     }
 
-    /// The object as an operand: a solid's recipe, or the baked mesh of any other tool's object. A
-    /// picture is none.
+    /// The construction line that it is.
+    pub fn line(&self) -> Option<&ConstructionLine> {
+        match &self.kind {
+            Kind::Line(line) => Some(line),
+            _ => None,
+        }
+    }
+
+    /// The stroke that it is.
+    pub fn stroke(&self) -> Option<&DrawnStroke> {
+        match &self.kind {
+            Kind::Stroke(stroke) => Some(stroke),
+            _ => None,
+        }
+    }
+
+    /// The object as an operand: a solid's recipe, or the baked mesh of any other tool's object.
+    /// Nothing for what is not closed.
     pub fn operand(&self) -> Option<Recipe> {
         match &self.kind {
             Kind::Solid(recipe) => Some(recipe.clone()),
@@ -122,7 +141,7 @@ impl Object {
                 mesh: *mesh,
                 bounds: *bounds,
             })),
-            Kind::Reference(_) => None,
+            _ => None,
         }
     }
 
@@ -130,7 +149,7 @@ impl Object {
     pub fn reference(&self) -> Option<&Reference> {
         match &self.kind {
             Kind::Reference(reference) => Some(reference),
-            Kind::Solid(_) | Kind::Foreign { .. } => None,
+            _ => None,
         }
     }
 
@@ -140,6 +159,8 @@ impl Object {
             Kind::Solid(recipe) => recipe.bounds(),
             Kind::Foreign { bounds, .. } => *bounds,
             Kind::Reference(reference) => reference.bounds(),
+            Kind::Line(line) => around(line.ends(), 0.0),
+            Kind::Stroke(stroke) => around(stroke.points(), 0.5 * stroke.width),
         }
     }
 }
@@ -163,6 +184,10 @@ pub enum Kind<R = Recipe> {
     },
     /// A picture to work from: seen, and part of nothing.
     Reference(Reference),
+    /// A straight construction line (ScaffoldSketch §3.2).
+    Line(ConstructionLine),
+    /// A shape stroke: a curve, drawn as a tube.
+    Stroke(Arc<DrawnStroke>),
 }
 
 /// A picture that stands in the room to work from. It lies in the x and y of its own frame, its
@@ -230,6 +255,8 @@ impl<R> Kind<R> {
                 bounds: *bounds,
             },
             Self::Reference(reference) => Kind::Reference(*reference),
+            Self::Line(line) => Kind::Line(line.clone()),
+            Self::Stroke(stroke) => Kind::Stroke(stroke.clone()),
         })
     }
 }

@@ -1,11 +1,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use midair_document::{Document, Kind, MeshStore, Object, ObjectId};
+use midair_document::{Document, Kind, MeshStore, Object, ObjectId, affine};
 use midair_field::{MeshSource, Placement};
-use midair_mesh::{Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write};
+use midair_mesh::{
+    Curve, Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write_drawing,
+};
 
-use crate::{Solid, SolidError, finish};
+use crate::{Solid, SolidError, finish, tube};
+
+/// Flat sides around a stroke that is written as a tube.
+const SIDES: usize = 12;
 
 /// What to write.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +29,7 @@ pub struct ExportOptions {
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// Nothing to see, or every solid came out empty.
-    #[error("{} was not written: no visible object has a surface. Show or add one, then export again.", file.display())]
+    #[error("{} was not written: nothing that can be seen has a surface that this format holds. Show or add a solid, then export again.", file.display())]
     Empty {
         /// Where it was to go.
         file: PathBuf,
@@ -75,8 +80,9 @@ fn format(file: &Path) -> Result<Format, ExportError> {
 }
 
 /// Writes the visible objects of a document as a mesh file, each as one named mesh, evaluated where
-/// it stands in the world, so that `step` is the step on the printed part. Returns the triangles
-/// written.
+/// it stands in the world, so that `step` is the step on the printed part. Strokes are polylines in OBJ
+/// and tubes elsewhere; construction lines are written where the format has lines. Returns the
+/// triangles written.
 ///
 /// # Errors
 ///
@@ -89,30 +95,60 @@ pub fn export(
     options: &ExportOptions,
     cancel: &AtomicBool,
 ) -> Result<usize, ExportError> {
-    let up = options.up.unwrap_or(format(file)?.up());
+    let format = format(file)?;
+    let up = options.up.unwrap_or(format.up());
     let step = options.step.unwrap_or(document.step());
-    let mut meshes = Vec::new();
+    let (mut meshes, mut curves) = (Vec::new(), Vec::new());
     for (id, object) in document.objects() {
         let wanted = match options.only {
             Some(only) => id == only,
             None => document.is_visible(id),
         };
-        if wanted && let Some(mesh) = object_mesh(file, object, store, volumes, step, cancel)? {
+        if !wanted {
+            continue;
+        }
+        if let Some(curve) = curve_of(object, format) {
+            curves.push(Named::new(object.name.clone(), curve).finished(Some(finish(object))));
+        } else {
+            let Some(mesh) = object_mesh(file, object, store, volumes, step, cancel)? else {
+                continue;
+            };
             meshes.push(
                 Named::new(object.name.clone(), mesh.standing(up)).finished(Some(finish(object))),
             );
         }
     }
     meshes.retain(|m| !m.value.triangles.is_empty());
-    if meshes.is_empty() {
+    if meshes.is_empty() && (curves.is_empty() || !format.has_lines()) {
         return Err(ExportError::Empty { file: file.into() });
     }
     let borrowed: Vec<_> = meshes
         .iter()
         .map(|m| Named::new(m.name.clone(), &m.value).finished(m.finish))
         .collect();
-    write(file, &borrowed, &WriteOptions { unit: options.unit })?;
+    let unit = options.unit;
+    write_drawing(file, &borrowed, &curves, &WriteOptions { unit })?;
     Ok(meshes.iter().map(|m| m.value.triangles.len()).sum())
+}
+
+/// What is written as a line: construction lines, and strokes where they are not tubes.
+fn curve_of(object: &Object, format: Format) -> Option<Curve> {
+    let (points, closed) = match &object.kind {
+        Kind::Line(line) => (line.ends().to_vec(), false),
+        Kind::Stroke(stroke) if format == Format::Obj => (stroke.points(), stroke.closed),
+        _ => return None,
+    };
+    let there = affine(&object.placement);
+    let points: Vec<_> = points
+        .iter()
+        .map(|&p| there.transform_point3(p).as_vec3())
+        .collect();
+    // The first point of a closed one is its last: the element says so instead.
+    let count = points.len() - usize::from(closed && points.len() > 3);
+    Some(Curve {
+        points: points[..count].to_vec(),
+        closed,
+    })
 }
 
 fn object_mesh(
@@ -143,6 +179,13 @@ fn object_mesh(
                 *p += object.placement.translation;
             }
             Ok(Some(mesh))
+        }
+        // Lines that the format does not hold.
+        Kind::Line(_) => Ok(None),
+        Kind::Stroke(stroke) => {
+            let radius = 0.5 * stroke.width;
+            let tube = tube(&stroke.points(), radius, stroke.closed, SIDES);
+            Ok(Some(tube.transformed(&object.placement.affine())))
         }
         Kind::Foreign { mesh, .. } => store
             .get(*mesh)

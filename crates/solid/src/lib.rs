@@ -28,11 +28,15 @@ use midair_surface::{Cancelled, Surface};
 
 mod export;
 mod material;
+mod plate;
 mod thumbnail;
+mod tube;
 
 pub use export::{ExportError, ExportOptions, export, may_export};
-pub use material::{MATERIALS, MaterialInfo, PLAIN, finish};
+pub use material::{INK, MATERIALS, MaterialInfo, PLAIN, finish};
+pub use plate::{PlateFault, plate};
 pub use thumbnail::Thumbnail;
+pub use tube::tube;
 
 /// Why a recipe did not become a solid.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-use midair_document::Object;
+use midair_document::{Kind, Object};
 use midair_mesh::Finish;
 
 /// A material a person can choose.
@@ -55,6 +55,9 @@ pub const MATERIALS: &[MaterialInfo] = &[
     },
 ];
 
+/// The colours of construction lines and of strokes that have none of their own: as pencil and ink.
+pub const INK: [[u8; 3]; 2] = [[0x8c, 0x8f, 0x96], [0x16, 0x17, 0x1a]];
+
 /// The colour of an object that has none of its own.
 pub const PLAIN: [u8; 3] = [0xc9, 0xc4, 0xbc];
 
@@ -70,8 +73,13 @@ impl MaterialInfo {
 /// How an object looks, as far as a file can say it.
 pub fn finish(object: &Object) -> Finish {
     let info = MATERIALS[MaterialInfo::index_of(object)];
+    let plain = match object.kind {
+        Kind::Line(_) => INK[0],
+        Kind::Stroke(_) => INK[1],
+        _ => PLAIN,
+    };
     Finish {
-        colour: object.colour.map_or(PLAIN, |c| c.0),
+        colour: object.colour.map_or(plain, |c| c.0),
         opacity: 1.0 - info.clear,
         roughness: info.roughness,
         metallic: info.metallic,

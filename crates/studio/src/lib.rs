@@ -7,6 +7,7 @@
 mod bounded;
 pub mod carry;
 pub mod command;
+pub mod drawing;
 pub mod evaluate;
 pub mod hands;
 pub mod help;
@@ -82,6 +83,7 @@ impl Plugin for StudioPlugin {
             project::plugin,
             objects::plugin,
             operands::plugin,
+            drawing::plugin,
             evaluate::plugin,
             pick::plugin,
             show::plugin,

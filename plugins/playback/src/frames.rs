@@ -135,6 +135,7 @@ const HAND: [u8; 2] = [2, 4];
 const HEAD: u8 = 8;
 const HAS_HEAD: u8 = 16;
 const SCALE: u8 = 32;
+const PIXEL: u8 = 64;
 
 const TRACKED: u8 = 1;
 const TOUCHED: u8 = 2;
@@ -160,6 +161,7 @@ struct FrameBits {
     has_head: bool,
     head: [u32; 7],
     scale: u32,
+    pixel: u32,
 }
 
 impl FrameBits {
@@ -178,6 +180,7 @@ impl FrameBits {
             has_head: false,
             head: pose,
             scale: 1.0_f32.to_bits(),
+            pixel: 0.0_f32.to_bits(),
         }
     };
 
@@ -196,6 +199,7 @@ impl FrameBits {
         self.has_head = frame.input.head.is_some();
         self.head = frame.input.head.map_or(self.head, |p| pose_bits(&p));
         self.scale = frame.input.metres_per_world.to_bits();
+        self.pixel = frame.input.pixel.to_bits();
         self
     }
 
@@ -215,6 +219,7 @@ impl FrameBits {
                 }),
                 head: self.has_head.then(|| pose_of(self.head)),
                 metres_per_world: f32::from_bits(self.scale),
+                pixel: f32::from_bits(self.pixel),
             },
         }
     }
@@ -372,6 +377,10 @@ fn pack(out: &mut Vec<u8>, last: &FrameBits, next: &FrameBits) {
         flags |= SCALE;
         put(out, u64::from(next.scale));
     }
+    if last.pixel != next.pixel {
+        flags |= PIXEL;
+        put(out, u64::from(next.pixel));
+    }
     out[at] = flags;
 }
 
@@ -434,7 +443,7 @@ impl Unpacker {
             if count == 0 || self.at == 0 {
                 return Err(FrameRunFault::Senseless(frame));
             }
-        } else if flags > DT | HAND[0] | HAND[1] | HEAD | HAS_HEAD | SCALE {
+        } else if flags > DT | HAND[0] | HAND[1] | HEAD | HAS_HEAD | SCALE | PIXEL {
             return Err(FrameRunFault::Senseless(frame));
         } else {
             self.state = rest.frame(self.state, flags)?;
@@ -485,6 +494,9 @@ impl Rest<'_> {
         }
         if flags & SCALE != 0 {
             state.scale = self.word()?;
+        }
+        if flags & PIXEL != 0 {
+            state.pixel = self.word()?;
         }
         Ok(state)
     }

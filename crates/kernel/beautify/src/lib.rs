@@ -14,5 +14,5 @@
 pub mod line;
 pub mod stroke;
 
-pub use line::{Constraint, Corrected, End, Line, LineOptions, Scaffold, correct_line};
+pub use line::{Constraint, Corrected, End, Line, LineOptions, Scaffold, correct_line, readings};
 pub use stroke::{Fair, Segment, StrokeOptions, fair_stroke};

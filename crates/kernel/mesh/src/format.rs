@@ -41,6 +41,11 @@ impl Format {
         )
     }
 
+    /// Whether it holds lines as well as faces.
+    pub fn has_lines(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf | Self::Obj)
+    }
+
     /// The format that the bytes themselves show; `None` where they leave it open.
     pub fn from_content(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(b"glTF") {

@@ -54,4 +54,7 @@ pub use read::{Read, ReadError, ReadReason, read, read_as, read_bytes, read_byte
 pub use tri_mesh::{Aabb, MeshHash, TriMesh};
 pub use unit::{Unit, UnknownUnit};
 pub use up::{UnknownUp, Up};
-pub use write::{Named, WriteError, WriteOptions, WriteReason, encode, writable, write};
+pub use write::{
+    Curve, Named, WriteError, WriteOptions, WriteReason, encode, encode_drawing, writable, write,
+    write_drawing,
+};

@@ -97,6 +97,9 @@ pub struct HandsInput {
     pub head: Option<Pose>,
     /// Physical metres per metre of world; 1 until the world is scaled.
     pub metres_per_world: f32,
+    /// Under how many radians a pixel is seen where hands move over a screen: what they reach is
+    /// measured in pixels there. 0 where they are free in space.
+    pub pixel: f32,
 }
 
 impl Default for HandsInput {
@@ -105,6 +108,7 @@ impl Default for HandsInput {
             frames: [HandFrame::default(); 2],
             head: None,
             metres_per_world: 1.0,
+            pixel: 0.0,
         }
     }
 }
@@ -199,6 +203,8 @@ pub struct Hands {
     pub head: Option<Pose>,
     /// Physical metres per metre of world: thresholds of the hand divide by it.
     pub metres_per_world: f32,
+    /// Under how many radians a pixel is seen on a screen; 0 where hands are free in space.
+    pub pixel: f32,
     /// Pulses asked for since the way in last took them.
     pub haptics: Vec<(Side, Haptic)>,
 }
@@ -209,6 +215,7 @@ impl Default for Hands {
             hands: Default::default(),
             head: None,
             metres_per_world: 1.0,
+            pixel: 0.0,
             haptics: Vec::new(),
         }
     }
@@ -240,6 +247,18 @@ impl Hands {
         }
     }
 
+    /// Metres of world that count as `physical` metres for the tip of a hand; on a screen, where a
+    /// hand is as exact as a pointer, as `pixels` at its depth.
+    pub fn reach(&self, side: Side, physical: f64, pixels: f64) -> f64 {
+        match self.head.filter(|_| self.pixel > 0.0) {
+            Some(head) => {
+                let depth = head.position.distance(self.get(side).pose.position);
+                f64::from(depth * self.pixel) * pixels
+            }
+            None => physical / f64::from(self.metres_per_world),
+        }
+    }
+
     /// Takes in one frame, `dt` seconds after the last.
     pub fn advance(&mut self, input: &HandsInput, dt: f32) {
         for (hand, frame) in self.hands.iter_mut().zip(&input.frames) {
@@ -248,6 +267,9 @@ impl Hands {
         self.head = input.head.filter(Pose::is_sound);
         if input.metres_per_world.is_finite() && input.metres_per_world > 0.0 {
             self.metres_per_world = input.metres_per_world;
+        }
+        if input.pixel.is_finite() && input.pixel >= 0.0 {
+            self.pixel = input.pixel;
         }
     }
 }

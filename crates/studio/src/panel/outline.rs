@@ -2,7 +2,7 @@
 
 use bevy::prelude::World;
 use bevy_egui::egui::{self, Align, Key, Layout, Response, RichText, Sense, Ui};
-use midair_document::{Document, GroupId, Layer, LayerId, ObjectId};
+use midair_document::{Document, GroupId, Kind, Layer, LayerId, ObjectId};
 
 use super::{Panel, icon};
 use crate::command::Command;
@@ -387,9 +387,11 @@ impl View {
                 let object = document.object(id)?;
                 Self {
                     name: object.name.clone(),
-                    sign: match object.recipe() {
-                        Some(_) => icon::CUBE,
-                        None => icon::PUZZLE_PIECE,
+                    sign: match object.kind {
+                        Kind::Solid(_) => icon::CUBE,
+                        Kind::Foreign { .. } => icon::PUZZLE_PIECE,
+                        Kind::Line(_) => icon::LINE_SEGMENT,
+                        Kind::Stroke(_) => icon::SCRIBBLE,
                     },
                     visible: object.visible,
                     locked: object.locked,

@@ -10,6 +10,7 @@ use midair_document::ObjectId;
 
 use crate::{
     StudioSet,
+    drawing::Drawing,
     hands::{Hands, Side},
     project::Project,
     show::{Drafts, ObjectEntity},
@@ -84,6 +85,7 @@ fn touch(
     hands: Res<Hands>,
     context: ReadRapierContext,
     proxies: Query<&Proxy>,
+    drawing: Res<Drawing>,
     mut touch: ResMut<Touch>,
 ) {
     let Ok(context) = context.single() else {
@@ -123,7 +125,13 @@ fn touch(
         if let Some((entity, nearest)) = context.project_point(tip, reach, true, filter) {
             consider(entity, nearest.point);
         }
-        best.map(|(_, touched)| touched)
+        // A line is thinner than anything.
+        let drawn = drawing.nearest(tip.as_dvec3(), reach.into()).map(|on| Touched {
+            object: on.id,
+            point: on.point.as_vec3(),
+            distance: on.distance as f32,
+        });
+        drawn.or(best.map(|(_, touched)| touched))
     });
     touch.set_if_neq(Touch { hands: found });
 }

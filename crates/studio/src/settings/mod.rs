@@ -13,6 +13,7 @@ mod look;
 mod palettes;
 mod patch;
 mod preview;
+mod scaffold;
 mod shelf;
 mod snap;
 mod symmetry;
@@ -31,6 +32,7 @@ pub use look::{LookSettings, RoomKind};
 pub use palettes::{OwnPalette, PaletteSettings, Swatch};
 pub use patch::SettingFault;
 pub use preview::PreviewSettings;
+pub use scaffold::{Draws, LinesShown, ScaffoldSettings};
 pub use shelf::ShelfSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
 pub use symmetry::{MirrorPlane, SymmetrySettings};
@@ -63,6 +65,8 @@ pub struct Settings {
     pub world: WorldSettings,
     /// What one wants in a headset.
     pub comfort: ComfortSettings,
+    /// How what is drawn is read.
+    pub scaffold: ScaffoldSettings,
     /// How far one is with learning.
     pub help: HelpSettings,
 }
@@ -78,7 +82,7 @@ impl Settings {
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
-const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world"];
+const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world", "scaffold"];
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Settings>();

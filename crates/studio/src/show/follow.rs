@@ -16,6 +16,7 @@ use crate::StudioSet;
 use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made};
 use crate::pick::Proxy;
 use crate::project::Project;
+use crate::settings::{LinesShown, Settings};
 
 /// Which object an entity shows.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +73,7 @@ pub(super) fn plugin(app: &mut App) {
         .init_resource::<Drawn>()
         .add_systems(
             Update,
-            (spawn, place, show)
+            (spawn, place, show, super::ink::draw)
                 .chain()
                 .in_set(ShowObjects)
                 .in_set(StudioSet::Rebuild)
@@ -113,9 +114,10 @@ fn spawn(project: Res<Project>, mut map: ResMut<ObjectMap>, mut commands: Comman
 fn place(
     project: Res<Project>,
     drafts: Res<Drafts>,
+    settings: Res<Settings>,
     mut objects: Query<(&ObjectEntity, &mut Transform, &mut Visibility)>,
 ) {
-    if !project.is_changed() && !drafts.is_changed() {
+    if !project.is_changed() && !drafts.is_changed() && !settings.is_changed() {
         return;
     }
     let document = project.document();
@@ -124,7 +126,8 @@ fn place(
             continue;
         };
         at.set_if_neq(transform(drafts.get(id.0).unwrap_or(&object.placement)));
-        visibility.set_if_neq(if document.is_visible(id.0) {
+        let hidden = settings.scaffold.lines == LinesShown::Hidden && object.line().is_some();
+        visibility.set_if_neq(if document.is_visible(id.0) && !hidden {
             Visibility::Inherited
         } else {
             Visibility::Hidden
@@ -157,6 +160,8 @@ fn show(
             continue;
         };
         let made = match &object.kind {
+            // Drawn without being made.
+            Kind::Line(_) | Kind::Stroke(_) => continue,
             Kind::Solid(recipe) => {
                 // The document's step first, which is what update makes; then finer, for the eye.
                 let steps = display_steps(document, object, recipe);

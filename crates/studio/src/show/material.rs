@@ -1,9 +1,10 @@
 use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::Face};
-use midair_document::Object;
-use midair_solid::{MATERIALS, MaterialInfo};
+use midair_document::{Kind, Object};
+use midair_solid::{INK, MATERIALS, MaterialInfo};
 
 use super::{Cue, Cues, ObjectEntity, Tint};
 use crate::project::Project;
+use crate::settings::{LinesShown, RoomKind, Settings};
 
 /// One material per look, made when first needed.
 #[derive(Resource, Default)]
@@ -21,10 +22,44 @@ struct Look {
     material: usize,
     /// A mirror image shows the other side of its triangles.
     mirrored: bool,
+    ink: Option<Ink>,
+}
+
+/// What decides how something drawn looks.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Ink {
+    stroke: bool,
+    dimmed: bool,
+    /// On dark ground ink is light.
+    dark: bool,
+}
+
+impl Ink {
+    fn of(kind: &Kind, settings: &Settings) -> Option<Self> {
+        let stroke = match kind {
+            Kind::Line(_) => false,
+            Kind::Stroke(_) => true,
+            Kind::Solid(_) | Kind::Foreign { .. } => return None,
+        };
+        Some(Self {
+            stroke,
+            dimmed: !stroke && settings.scaffold.lines == LinesShown::Dimmed,
+            dark: settings.look.room == RoomKind::Dusk,
+        })
+    }
+
+    fn colour(self) -> Color {
+        let [r, g, b] = match (self.dark, self.stroke) {
+            (false, stroke) => INK[usize::from(stroke)],
+            (true, false) => [0x9a, 0x9d, 0xa6],
+            (true, true) => [0xf1, 0xef, 0xea],
+        };
+        Color::srgb_u8(r, g, b)
+    }
 }
 
 impl Look {
-    fn of(object: &Object, cue: &Cue) -> Self {
+    fn of(object: &Object, cue: &Cue, settings: &Settings) -> Self {
         Self {
             tint: cue.tint,
             touched: cue.touched,
@@ -33,6 +68,7 @@ impl Look {
             own: object.colour.map(|c| c.0),
             material: MaterialInfo::index_of(object),
             mirrored: object.placement.scale.to_array().iter().product::<f32>() < 0.0,
+            ink: Ink::of(&object.kind, settings),
         }
     }
 
@@ -40,6 +76,7 @@ impl Look {
         // An operand's colour says what it does and comes before its own.
         let base = match (self.tint, self.own) {
             (Tint::Plain, Some([r, g, b])) => Color::srgb_u8(r, g, b),
+            (Tint::Plain, None) if let Some(ink) = self.ink => ink.colour(),
             (tint, _) => tint.colour(),
         };
         let info = MATERIALS[self.material];
@@ -48,6 +85,16 @@ impl Look {
             (true, false) => 0.2,
             (false, _) => 1.0 - info.clear,
         };
+        // Thin lines have no light and shade.
+        if let Some(ink) = self.ink.filter(|ink| !ink.stroke) {
+            let alpha = if ink.dimmed { 0.22 } else { 0.9 };
+            return StandardMaterial {
+                base_color: base.with_alpha(if self.touched || self.selected { 1.0 } else { alpha }),
+                unlit: true,
+                alpha_mode: AlphaMode::Blend,
+                ..default()
+            };
+        }
         let glow = match (self.touched, self.selected) {
             (true, _) => 0.16,
             (false, true) => 0.07,
@@ -81,13 +128,18 @@ pub(super) fn plugin(app: &mut App) {
         // After the tools have said how things should look in this frame.
         .add_systems(
             PostUpdate,
-            paint.run_if(resource_changed::<Cues>.or_else(resource_changed::<Project>)),
+            paint.run_if(
+                resource_changed::<Cues>
+                    .or_else(resource_changed::<Project>)
+                    .or_else(resource_changed::<Settings>),
+            ),
         );
 }
 
 fn paint(
     cues: Res<Cues>,
     project: Res<Project>,
+    settings: Res<Settings>,
     mut looks: ResMut<Looks>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut objects: Query<(&ObjectEntity, &mut MeshMaterial3d<StandardMaterial>)>,
@@ -101,7 +153,7 @@ fn paint(
         if thing.reference().is_some() {
             continue;
         }
-        let look = Look::of(thing, cue);
+        let look = Look::of(thing, cue, &settings);
         let wanted = looks
             .0
             .entry(look)

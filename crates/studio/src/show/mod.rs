@@ -4,6 +4,7 @@ mod cue;
 mod follow;
 mod form;
 mod guides;
+mod ink;
 mod material;
 mod readout;
 mod room;

@@ -6,6 +6,8 @@ use super::{Constraint, End, Line, LineOptions, Scaffold};
 
 /// Two directions or lengths nearer than this are one candidate.
 const SAME: f64 = 1e-9;
+/// Of an upright and a level line only lengths nearer than this share of the reach are taken for equal.
+const LESS_ALIKE: f64 = 0.3;
 
 /// Every relation within its threshold, nearest first within its kind.
 pub(super) fn candidates(
@@ -33,8 +35,9 @@ pub(super) fn candidates(
     let (least_sine, least_cosine) = (options.angle.sin(), options.angle.cos());
     let length = line.length();
     let mut directions: Vec<DVec3> = Vec::new();
-    let mut lengths: Vec<f64> = Vec::new();
+    let mut lengths: Vec<(bool, f64, usize)> = Vec::new();
     let mut lines = Vec::new();
+    let (mut angles, mut weak) = (Vec::<DVec3>::new(), Vec::new());
     for (index, other) in scaffold.lines.iter().enumerate() {
         let Some(direction) = other.direction() else {
             continue;
@@ -68,17 +71,44 @@ pub(super) fn candidates(
                 }
             });
         }
-        let other = other.length();
+        // Only where the two meet: an angle to a line far away is seen by nobody.
+        let meets = || {
+            [other.a, other.b].iter().any(|p| {
+                [line.a, line.b]
+                    .iter()
+                    .any(|q| p.distance_squared(*q) < reach_squared)
+            })
+        };
+        if options.part_turn > 0.0
+            && let Some(cosine) = part_turn(unit.dot(direction), options.part_turn)
+            && meets()
+            && !angles.iter().any(|&d| parallel(d, direction))
+        {
+            angles.push(direction);
+            weak.push(Constraint::Angle {
+                direction,
+                cosine,
+                line: index,
+            });
+        }
+        // Upright lines and level ones are seldom meant to be as long as each other.
+        let alike = !options.vertical || (unit.y.abs() > 0.7) == (direction.y.abs() > 0.7);
+        lengths.push((!alike, other.length(), index));
+    }
+    lengths.sort_by_key(|(other_way, ..)| *other_way);
+    let mut equal: Vec<f64> = Vec::new();
+    for (other_way, other, line) in lengths {
         // No end is moved farther for a length than it would be for a point: a share of a long line
         // is more than a hand is off by.
+        let most = if other_way { LESS_ALIKE * reach } else { reach };
         if (length / other - 1.0).abs() < options.length
-            && (length - other).abs() < reach
-            && !lengths.iter().any(|&l| (l / other - 1.0).abs() < SAME)
+            && (length - other).abs() < most
+            && !equal.iter().any(|&l| (l / other - 1.0).abs() < SAME)
         {
-            lengths.push(other);
+            equal.push(other);
             lines.push(Constraint::EqualLength {
                 length: other,
-                line: index,
+                line,
             });
         }
     }
@@ -98,7 +128,32 @@ pub(super) fn candidates(
         }
     }
     found.append(&mut lines);
+    found.append(&mut weak);
     found
+}
+
+/// The cosine of 60° or 120° where `cosine` is within `angle` of it, or of 30°, 45°, 135° or 150°, which
+/// are meant less often, within a part of that.
+fn part_turn(cosine: f64, angle: f64) -> Option<f64> {
+    const LESS: f64 = 0.55;
+    let at = cosine.clamp(-1.0, 1.0).acos();
+    let wholes = [
+        (60.0, 1.0),
+        (120.0, 1.0),
+        (45.0, LESS),
+        (135.0, LESS),
+        (30.0, LESS),
+        (150.0, LESS),
+    ];
+    wholes
+        .into_iter()
+        .map(|(degrees, share): (f64, f64)| {
+            let whole = degrees.to_radians();
+            (whole, (whole - at).abs() / (angle * share))
+        })
+        .filter(|(_, off)| *off < 1.0)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(whole, _)| whole.cos())
 }
 
 fn is_point(c: &Constraint, p: DVec3) -> bool {

@@ -47,6 +47,16 @@ pub enum Constraint {
         /// The line that has it; `None` for the vertical.
         line: Option<usize>,
     },
+    /// At an angle to a unit direction that is a whole part of a turn: what makes a hexagon regular.
+    /// Not one of the paper's; weaker than all of those.
+    Angle {
+        /// The direction.
+        direction: DVec3,
+        /// The cosine of the angle between the two, with its sign.
+        cosine: f64,
+        /// The line that has it.
+        line: usize,
+    },
     /// As long as another line (Eq. 5).
     EqualLength {
         /// Its length in metres.
@@ -106,6 +116,18 @@ impl Constraint {
                     by_b: by,
                 }
             }
+            Self::Angle {
+                direction, cosine, ..
+            } => {
+                let (unit, turn) = unit(line)?;
+                let row = turn.transpose() * direction;
+                let by = DMat3::from_cols(row.x * DVec3::X, row.y * DVec3::X, row.z * DVec3::X);
+                Residual {
+                    value: DVec3::X * (unit.dot(direction) - cosine),
+                    by_a: -by,
+                    by_b: by,
+                }
+            }
             Self::Parallel { direction, .. } => {
                 let (unit, turn) = unit(line)?;
                 // d × as a matrix: l̂ × d = −[d]× l̂.
@@ -129,10 +151,61 @@ impl Constraint {
         })
     }
 
+    /// The same in a world that is so many times as large.
+    pub(super) fn scaled(&self, by: f64) -> Self {
+        let mut scaled = *self;
+        match &mut scaled {
+            Self::PointPoint { point, .. } => *point *= by,
+            Self::PointLine { through, .. } => *through *= by,
+            Self::EqualLength { length, .. } => *length *= by,
+            Self::Perpendicular { .. } | Self::Parallel { .. } | Self::Angle { .. } => {}
+        }
+        scaled
+    }
+
+    /// In which order relations are taken up: points, then what the paper has, then angles.
+    pub(super) fn rank(&self) -> u8 {
+        match self {
+            Self::PointPoint { .. } => 0,
+            Self::Angle { .. } => 2,
+            _ => 1,
+        }
+    }
+
+    /// Whether two relations ask for the same: the same point, direction, length or line.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let near = |a: DVec3, b: DVec3| a.distance_squared(b) < 1e-16;
+        let along = |a: DVec3, b: DVec3| a.cross(b).length_squared() < 1e-16;
+        match (self, other) {
+            (Self::PointPoint { end: e, point: p }, Self::PointPoint { end: f, point: q }) => {
+                e == f && near(*p, *q)
+            }
+            (
+                Self::PointLine {
+                    end: e, line: i, ..
+                },
+                Self::PointLine {
+                    end: f, line: j, ..
+                },
+            ) => e == f && i == j,
+            (
+                Self::Perpendicular { direction: d, .. },
+                Self::Perpendicular { direction: e, .. },
+            )
+            | (Self::Parallel { direction: d, .. }, Self::Parallel { direction: e, .. })
+            | (Self::Angle { direction: d, .. }, Self::Angle { direction: e, .. }) => along(*d, *e),
+            (Self::EqualLength { length: a, .. }, Self::EqualLength { length: b, .. }) => {
+                (a - b).abs() < 1e-9
+            }
+            _ => false,
+        }
+    }
+
     /// Its weight before the first iteration.
     pub(super) fn prior(&self) -> f64 {
         match self {
             Self::PointPoint { .. } => 100.0,
+            Self::Angle { .. } => 0.25,
             _ => 1.0,
         }
     }

@@ -16,6 +16,8 @@ pub struct Corrected {
     pub refused: bool,
 }
 
+/// Energies below this say no more than that a relation holds.
+const HELD: f64 = 1e-10;
 /// How often the corrected line is looked at again for relations that came within reach.
 const ROUNDS: usize = 6;
 
@@ -27,6 +29,16 @@ const ROUNDS: usize = 6;
 ///
 /// A line without length, or that is not finite, comes back as it is.
 pub fn correct_line(drawn: &Line, scaffold: &Scaffold, options: &LineOptions) -> Corrected {
+    correct_where(drawn, scaffold, options, &|_| true)
+}
+
+/// The same with those relations only for which `may` holds.
+pub(super) fn correct_where(
+    drawn: &Line,
+    scaffold: &Scaffold,
+    options: &LineOptions,
+    may: &dyn Fn(&Constraint) -> bool,
+) -> Corrected {
     let as_drawn = |refused| Corrected {
         line: *drawn,
         kept: Vec::new(),
@@ -39,12 +51,38 @@ pub fn correct_line(drawn: &Line, scaffold: &Scaffold, options: &LineOptions) ->
     if !sound {
         return as_drawn(false);
     }
+    if scale != 1.0 {
+        // In physical metres: a zoomed world is the same world.
+        let there = |l: &Line| Line::new(l.a * scale, l.b * scale);
+        let scaled = Scaffold {
+            lines: scaffold.lines.iter().map(there).collect(),
+            ticks: scaffold.ticks.iter().map(|t| *t * scale).collect(),
+        };
+        let options = LineOptions {
+            metres_per_world: 1.0,
+            ..*options
+        };
+        // What is asked about is known by its own numbers.
+        let may = |c: &Constraint| may(&c.scaled(1.0 / scale));
+        let out = correct_where(&there(drawn), &scaled, &options, &may);
+        if out.refused {
+            return as_drawn(true);
+        }
+        let back = |all: Vec<Constraint>| all.iter().map(|c| c.scaled(1.0 / scale)).collect();
+        return Corrected {
+            line: Line::new(out.line.a / scale, out.line.b / scale),
+            kept: back(out.kept),
+            dropped: back(out.dropped),
+            ..out
+        };
+    }
     let mut line = *drawn;
     let mut kept: Vec<Constraint> = Vec::new();
     let mut dropped = Vec::new();
     let mut iterations = 0;
     for _ in 0..ROUNDS {
-        let found = candidates(&line, scaffold, options);
+        let mut found = candidates(&line, scaffold, options);
+        found.retain(may);
         let (settled, took) = select::settle(&line, &found, scale);
         iterations += took;
         let before = line;
@@ -79,15 +117,16 @@ fn meet(
     held: &[Constraint],
     scale: f64,
 ) -> (Line, Vec<Constraint>, Vec<Constraint>) {
-    let mut order: Vec<(f64, &Constraint)> = found
-        .iter()
-        .map(|c| (c.energy(settled, scale), c))
-        .collect();
+    // What settled holds to rounding: among such the nearest to what was drawn comes first.
+    let weigh = |c: &Constraint| {
+        let energy = c.energy(settled, scale);
+        if energy < HELD { c.energy(drawn, scale) * HELD } else { energy }
+    };
+    let mut order: Vec<(f64, &Constraint)> = found.iter().map(|c| (weigh(c), c)).collect();
     let holds_now = |c: &Constraint| c.energy(now, scale) < exact::HOLDS * exact::HOLDS;
     order.sort_by(|(a, x), (b, y)| {
-        let is_free = |c: &Constraint| !matches!(c, Constraint::PointPoint { .. });
-        (!holds_now(x), is_free(x), *a)
-            .partial_cmp(&(!holds_now(y), is_free(y), *b))
+        (!holds_now(x), x.rank(), *a)
+            .partial_cmp(&(!holds_now(y), y.rank(), *b))
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     let mut kept = held.to_vec();

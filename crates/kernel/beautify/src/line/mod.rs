@@ -4,6 +4,7 @@ mod candidates;
 mod constraint;
 mod correct;
 mod exact;
+mod readings;
 mod select;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -12,6 +13,7 @@ use glam::DVec3;
 
 pub use constraint::{Constraint, End};
 pub use correct::{Corrected, correct_line};
+pub use readings::readings;
 
 /// A straight line with two ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,10 +78,27 @@ pub struct LineOptions {
     pub angle: f64,
     /// Off equal length, as a share (§4.1: 25 %).
     pub length: f64,
+    /// Radians off a sixth or a third of a turn to a line that it meets, and a part of it off 30°, 45°, 135°
+    /// and 150°; 0 where only square and parallel lines are meant, as in the paper.
+    pub part_turn: f64,
     /// Whether the vertical is a direction like those of lines: to be parallel or square to.
     pub vertical: bool,
     /// Physical metres per metre of world: zooming in makes the thresholds finer.
     pub metres_per_world: f64,
+}
+
+impl LineOptions {
+    /// The same with thresholds that are `strength` times as wide, within what makes sense.
+    #[must_use]
+    pub fn stronger(&self, strength: f64) -> Self {
+        Self {
+            distance: self.distance * strength,
+            angle: (self.angle * strength).min(0.6),
+            length: (self.length * strength).min(0.9),
+            part_turn: (self.part_turn * strength).min(0.24),
+            ..*self
+        }
+    }
 }
 
 impl Default for LineOptions {
@@ -88,6 +107,7 @@ impl Default for LineOptions {
             distance: 0.05,
             angle: 10.0_f64.to_radians(),
             length: 0.25,
+            part_turn: 10.0_f64.to_radians(),
             vertical: true,
             metres_per_world: 1.0,
         }

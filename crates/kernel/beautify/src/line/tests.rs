@@ -267,6 +267,10 @@ fn most_noisy_hexagonal_prisms_come_out_exact() {
             .collect();
         let lines = sketch(&corners, &edges, 0.02, &mut random);
         let closes = closes(&lines, &edges);
+        let regular = (0..6).all(|i| {
+            let [a, b] = [i, (i + 1) % 6].map(|k| lines[k].direction().unwrap_or_default());
+            (a.dot(b) - 0.5).abs() < 1e-6
+        });
         closed += usize::from(closes);
         let upright = lines[6..12].iter().all(|l| {
             l.direction()
@@ -276,12 +280,21 @@ fn most_noisy_hexagonal_prisms_come_out_exact() {
             part.iter()
                 .all(|l| (l.length() - part[0].length()).abs() < 1e-6)
         };
+        if !(closes && upright && regular && equal(&lines[..6]) && equal(&lines[12..]) && equal(&lines[6..12])) && std::env::var_os("SHOW").is_some() {
+            println!("side {side:.3} upright {upright} regular {regular} equal {} {} {} height {height:.4}", equal(&lines[..6]), equal(&lines[12..]), equal(&lines[6..12]));
+            for l in &lines { println!("  {:.4} {:.2}", l.length(), (l.b-l.a).z.atan2((l.b-l.a).x).to_degrees()); }
+        }
         exact += usize::from(
-            closes && upright && equal(&lines[..6]) && equal(&lines[12..]) && equal(&lines[6..12]),
+            closes
+                && upright
+                && regular
+                && equal(&lines[..6])
+                && equal(&lines[12..])
+                && equal(&lines[6..12]),
         );
     }
     println!("{exact} of 200 prisms exact, {closed} closed");
-    assert!(closed == 200 && exact >= 180, "{closed} {exact}");
+    assert!(closed >= 198 && exact >= 190, "{closed} {exact}");
 }
 
 #[test]
@@ -353,4 +366,81 @@ proptest! {
         prop_assert!(out.line.a.distance(back.a) < 1e-7, "{here:?} {out:?}");
         prop_assert!(out.line.b.distance(back.b) < 1e-7);
     }
+
+    #[test]
+    fn turned_in_any_way_it_is_the_same_without_a_vertical((line, scaffold) in scene(), x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) {
+        let options = LineOptions { vertical: false, ..LineOptions::default() };
+        let q = DQuat::from_scaled_axis(v(x, y, z) * 3.0);
+        let there = |l: &Line| Line::new(q * l.a, q * l.b);
+        let moved = Scaffold { lines: scaffold.lines.iter().map(there).collect(), ticks: vec![] };
+        let here = correct_line(&line, &scaffold, &options);
+        let out = correct_line(&there(&line), &moved, &options);
+        let back = there(&here.line);
+        prop_assert!(out.line.a.distance(back.a) < 1e-7, "{here:?} {out:?}");
+        prop_assert!(out.line.b.distance(back.b) < 1e-7);
+    }
+
+    #[test]
+    fn in_a_zoomed_world_it_is_the_same_in_its_scale((line, scaffold) in scene(), zoom in 0.1..10.0) {
+        let there = |l: &Line| Line::new(l.a / zoom, l.b / zoom);
+        let moved = Scaffold { lines: scaffold.lines.iter().map(there).collect(), ticks: vec![] };
+        let here = correct_line(&line, &scaffold, &LineOptions::default());
+        let options = LineOptions { metres_per_world: zoom, ..LineOptions::default() };
+        let out = correct_line(&there(&line), &moved, &options);
+        let back = there(&here.line);
+        prop_assert!(out.line.a.distance(back.a) * zoom < 1e-7, "{here:?} {out:?}");
+        prop_assert!(out.line.b.distance(back.b) * zoom < 1e-7);
+    }
+
+    #[test]
+    fn other_readings_differ_and_end_with_what_was_drawn((line, scaffold) in scene()) {
+        let options = LineOptions::default();
+        let all = readings(&line, &scaffold, &options, 5);
+        prop_assert!(!all.is_empty() && all.len() <= 5);
+        prop_assert_eq!(all[0].line, correct_line(&line, &scaffold, &options).line);
+        for (i, a) in all.iter().enumerate() {
+            for c in &a.kept {
+                prop_assert!(c.energy(&a.line, 1.0).sqrt() < 1e-6, "{c:?}");
+            }
+            for b in &all[..i] {
+                prop_assert!(a.line.a.distance(b.line.a).max(a.line.b.distance(b.line.b)) > 9e-4);
+            }
+        }
+        let moved = all[0].line.a.distance(line.a).max(all[0].line.b.distance(line.b));
+        if moved > 2e-3 {
+            prop_assert_eq!(all[all.len() - 1].line, line);
+        }
+    }
+}
+
+#[test]
+fn a_scene_in_which_everything_conflicts_throws_no_line() {
+    let mut random = Random::new(23);
+    for _ in 0..40 {
+        // Hundreds of points around both ends, and lines in every direction.
+        let near = |random: &mut Random, at: DVec3| at + random.within(0.05);
+        let (a, b) = (v(0.0, 0.0, 0.0), v(0.4, 0.1, 0.0));
+        let scaffold = Scaffold {
+            lines: (0..150)
+                .map(|_| Line::new(near(&mut random, a), near(&mut random, b)))
+                .collect(),
+            ticks: (0..300).map(|_| near(&mut random, a)).collect(),
+        };
+        let drawn = Line::new(a, b);
+        let out = correct_line(&drawn, &scaffold, &LineOptions::default());
+        assert!(
+            out.line.a.distance(a) < 0.2 && out.line.b.distance(b) < 0.2,
+            "{out:?}"
+        );
+        for c in &out.kept {
+            assert!(c.energy(&out.line, 1.0).sqrt() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn two_identical_lines_stay_identical() {
+    let line = Line::new(v(0.1, 0.2, 0.3), v(0.5, 0.2, 0.3));
+    let out = correct(line, &[line, line]);
+    assert!(out.line.a.distance(line.a) < 1e-9 && out.line.b.distance(line.b) < 1e-9);
 }

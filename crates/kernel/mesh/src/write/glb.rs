@@ -14,10 +14,11 @@ use gltf::json::{Accessor, Asset, Buffer, Index, Material, Mesh, Root};
 
 use crate::Finish;
 
-use super::{Part, WriteReason};
+use super::{Lines, Part, WriteReason};
 
-/// A GLB with one node per mesh, with normals where a mesh has them, and one material per look.
-pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
+/// A GLB with one node per mesh, with normals where a mesh has them, one per curve, and one material
+/// per look.
+pub(super) fn encode(parts: &[Part], curves: &[Lines]) -> Result<Vec<u8>, WriteReason> {
     let mut root = Root {
         asset: Asset {
             generator: Some("Midair".into()),
@@ -73,6 +74,36 @@ pub(super) fn encode(parts: &[Part]) -> Result<Vec<u8>, WriteReason> {
         nodes.push(data.root.push(Node {
             mesh: Some(mesh),
             name: Some(part.name.into()),
+            ..Node::default()
+        }));
+    }
+    for curve in curves {
+        let position = data.vectors(&curve.positions, true);
+        let material = curve.finish.map(|finish| data.material(finish));
+        let mesh = data.root.push(Mesh {
+            extensions: None,
+            extras: Default::default(),
+            name: Some(curve.name.into()),
+            primitives: vec![Primitive {
+                attributes: [(Valid(Semantic::Positions), position)]
+                    .into_iter()
+                    .collect(),
+                extensions: None,
+                extras: Default::default(),
+                indices: None,
+                material,
+                mode: Valid(if curve.closed {
+                    Mode::LineLoop
+                } else {
+                    Mode::LineStrip
+                }),
+                targets: None,
+            }],
+            weights: None,
+        });
+        nodes.push(data.root.push(Node {
+            mesh: Some(mesh),
+            name: Some(curve.name.into()),
             ..Node::default()
         }));
     }

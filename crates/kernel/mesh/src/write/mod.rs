@@ -41,6 +41,15 @@ impl<T> Named<T> {
     }
 }
 
+/// Points joined by straight lines, in metres. OBJ and GLB hold it, the other formats leave it out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Its points, at least two.
+    pub points: Vec<Vec3>,
+    /// Whether the last is joined to the first.
+    pub closed: bool,
+}
+
 /// How a file is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WriteOptions {
@@ -112,10 +121,23 @@ pub fn write(
     meshes: &[Named<&TriMesh>],
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
+    write_drawing(path, meshes, &[], options)
+}
+
+/// The same with curves beside the meshes.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_drawing(
+    path: &Path,
+    meshes: &[Named<&TriMesh>],
+    curves: &[Named<Curve>],
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
     Format::from_path(path)
         .filter(|&format| format != Format::Gltf)
         .ok_or(WriteReason::UnknownFormat)
-        .and_then(|format| encode(format, meshes, options))
+        .and_then(|format| encode_drawing(format, meshes, curves, options))
         .and_then(|bytes| save::save(path, &bytes))
         .map_err(|reason| refused(path, reason))
 }
@@ -149,26 +171,42 @@ pub fn encode(
     meshes: &[Named<&TriMesh>],
     options: &WriteOptions,
 ) -> Result<Vec<u8>, WriteReason> {
+    encode_drawing(format, meshes, &[], options)
+}
+
+/// The same with curves beside the meshes.
+pub fn encode_drawing(
+    format: Format,
+    meshes: &[Named<&TriMesh>],
+    curves: &[Named<Curve>],
+    options: &WriteOptions,
+) -> Result<Vec<u8>, WriteReason> {
     let unit = options.unit.unwrap_or(format.unit());
     let parts: Vec<Part> = meshes
         .iter()
         .filter(|mesh| !mesh.value.triangles.is_empty())
         .map(|mesh| Part::new(mesh, unit))
         .collect::<Result<_, _>>()?;
-    if parts.is_empty() {
+    let curves: Vec<Lines> = curves
+        .iter()
+        .filter(|curve| format.has_lines() && curve.value.points.len() > 1)
+        .map(|curve| Lines::new(curve, unit))
+        .collect::<Result<_, _>>()?;
+    if parts.is_empty() && curves.is_empty() {
         return Err(WriteReason::NoFaces);
     }
     let corners: usize = parts
         .iter()
         .map(|part| 3 * part.mesh.triangles.len() + part.positions.len())
+        .chain(curves.iter().map(|curve| 2 * curve.positions.len()))
         .sum();
     // 12 bytes each at most, in formats that count bytes in 32 bits.
     if corners > u32::MAX as usize / 12 {
         return Err(WriteReason::TooMany);
     }
     match format {
-        Format::Glb | Format::Gltf => glb::encode(&parts),
-        Format::Obj => Ok(obj::encode(&parts)),
+        Format::Glb | Format::Gltf => glb::encode(&parts, &curves),
+        Format::Obj => Ok(obj::encode(&parts, &curves)),
         Format::Stl => stl::encode(&parts),
         Format::Ply => Ok(ply::encode(
             &parts
@@ -187,6 +225,30 @@ struct Part<'a> {
     finish: Option<Finish>,
     /// Positions in the file's unit.
     positions: Vec<Vec3>,
+}
+
+/// A curve ready to be written.
+struct Lines<'a> {
+    name: &'a str,
+    finish: Option<Finish>,
+    closed: bool,
+    /// Positions in the file's unit.
+    positions: Vec<Vec3>,
+}
+
+impl<'a> Lines<'a> {
+    fn new(named: &'a Named<Curve>, unit: Unit) -> Result<Self, WriteReason> {
+        let points = &named.value.points;
+        if !points.iter().all(|p| p.is_finite()) {
+            return Err(WriteReason::Unsound(named.name.clone()));
+        }
+        Ok(Self {
+            name: &named.name,
+            finish: named.finish,
+            closed: named.value.closed,
+            positions: rescaled(points, unit.per_metre()).ok_or(WriteReason::TooLarge(unit))?,
+        })
+    }
 }
 
 impl<'a> Part<'a> {

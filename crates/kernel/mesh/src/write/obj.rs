@@ -1,25 +1,14 @@
 use std::fmt::Write;
 
-use super::Part;
+use super::{Lines, Part};
 
-/// A text with one object per mesh. The numbers are the shortest that give the same f32 again.
-pub(super) fn encode(parts: &[Part]) -> Vec<u8> {
+/// A text with one object per mesh, and one of `l` elements per curve. The numbers are the shortest that give the same f32 again.
+pub(super) fn encode(parts: &[Part], curves: &[Lines]) -> Vec<u8> {
     let mut text = String::from("# Midair\n");
     let mut first = 1_u64;
     for part in parts {
-        let name: String = part
-            .name
-            .chars()
-            .map(|c| {
-                if c.is_whitespace() || c.is_control() {
-                    '_'
-                } else {
-                    c
-                }
-            })
-            .collect();
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "o {}", if name.is_empty() { "object" } else { &name });
+        let _ = writeln!(text, "o {}", word(part.name));
         for p in &part.positions {
             let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
         }
@@ -29,5 +18,33 @@ pub(super) fn encode(parts: &[Part]) -> Vec<u8> {
         }
         first += part.positions.len() as u64;
     }
+    for curve in curves {
+        let _ = writeln!(text, "o {}", word(curve.name));
+        for p in &curve.positions {
+            let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+        }
+        text.push('l');
+        let count = curve.positions.len() as u64;
+        for i in (0..count).chain(curve.closed.then_some(0)) {
+            let _ = write!(text, " {}", first + i);
+        }
+        text.push('\n');
+        first += count;
+    }
     text.into_bytes()
+}
+
+/// A name without what ends one in this format.
+fn word(name: &str) -> String {
+    let plain = |c: char| {
+        if c.is_whitespace() || c.is_control() {
+            '_'
+        } else {
+            c
+        }
+    };
+    if name.is_empty() {
+        return "object".to_owned();
+    }
+    name.chars().map(plain).collect()
 }

@@ -1,0 +1,120 @@
+//! Lines and strokes on screen: thin lines with their keypoints, strokes as tubes. Each is a mesh of its own, made
+//! anew only when it changes itself.
+
+use bevy::light::NotShadowCaster;
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use midair_document::{ConstructionLine, Kind};
+use midair_mesh::TriMesh;
+use midair_solid::tube;
+
+use super::{ObjectEntity, to_bevy_mesh};
+use crate::hands::Hands;
+use crate::project::Project;
+
+/// Metres from the middle of a construction line to its side, as a hand sees it.
+const THIN: f64 = 0.0011;
+/// Metres from a keypoint to the tips of its mark.
+const TICK: f64 = 0.0045;
+/// Flat sides around a stroke.
+const SIDES: usize = 10;
+
+/// What of a drawing an entity shows, and at which zoom.
+#[derive(Component, Default)]
+pub(super) struct Inked(Option<(Kind, i32)>);
+
+/// The zoom in whole powers of two: lines stay as thin in a scaled world, and few are made anew.
+fn zoom(hands: &Hands) -> i32 {
+    f64::from(hands.metres_per_world.max(1e-6)).log2().round() as i32
+}
+
+pub(super) fn draw(
+    project: Res<Project>,
+    hands: Res<Hands>,
+    mut drawn_at: Local<Option<i32>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut objects: Query<(Entity, &ObjectEntity, Option<&mut Inked>)>,
+    mut commands: Commands,
+) {
+    let zoom = zoom(&hands);
+    if !project.is_changed() && *drawn_at == Some(zoom) {
+        return;
+    }
+    *drawn_at = Some(zoom);
+    let document = project.document();
+    for (entity, id, inked) in &mut objects {
+        let Some(object) = document.object(id.0) else {
+            continue;
+        };
+        let drawn = matches!(object.kind, Kind::Line(_) | Kind::Stroke(_));
+        let shown = inked.as_ref().and_then(|i| i.0.as_ref());
+        if !drawn || shown.is_some_and(|(kind, at)| *at == zoom && same(kind, &object.kind)) {
+            continue;
+        }
+        let unit = f64::from(-zoom).exp2();
+        let mesh = match &object.kind {
+            Kind::Line(line) => line_mesh(line, unit),
+            Kind::Stroke(stroke) => {
+                tube(&stroke.points(), 0.5 * stroke.width, stroke.closed, SIDES)
+            }
+            Kind::Solid(_) | Kind::Foreign { .. } => continue,
+        };
+        let handle = meshes.add(to_bevy_mesh(&mesh));
+        commands.entity(entity).insert((
+            Mesh3d(handle),
+            NotShadowCaster,
+            Inked(Some((object.kind.clone(), zoom))),
+        ));
+    }
+}
+
+/// Strokes are shared: the same one needs no look at its points.
+fn same(a: &Kind, b: &Kind) -> bool {
+    match (a, b) {
+        (Kind::Stroke(a), Kind::Stroke(b)) => std::sync::Arc::ptr_eq(a, b) || a == b,
+        _ => a == b,
+    }
+}
+
+/// A line as a thin prism, and an octahedron at each keypoint.
+fn line_mesh(line: &ConstructionLine, unit: f64) -> TriMesh {
+    let mut mesh = tube(&line.ends(), THIN * unit, false, 6);
+    // Ticks of short lines do not hide them.
+    let size = (TICK * unit).min(0.1 * line.a.distance(line.b));
+    for at in line.keypoints() {
+        octahedron(&mut mesh, at, size);
+    }
+    mesh
+}
+
+fn octahedron(mesh: &mut TriMesh, at: DVec3, size: f64) {
+    let first = mesh.positions.len() as u32;
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        for side in [axis, -axis] {
+            mesh.positions.push((at + side * size).as_vec3());
+            mesh.normals.push(side.as_vec3());
+        }
+    }
+    for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
+        mesh.triangles.push([first + x, first + y, first + z]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_a_mark_at_each_keypoint_and_no_hole() {
+        let line = ConstructionLine {
+            ticks: vec![0.2],
+            ..ConstructionLine::raw(DVec3::ZERO, DVec3::X)
+        };
+        let mesh = line_mesh(&line, 1.0);
+        assert_eq!(mesh.triangles.len(), tube(&line.ends(), THIN, false, 6).triangles.len() + 4 * 8);
+        assert!(mesh.volume() > 0.0);
+        let mut one = TriMesh::default();
+        octahedron(&mut one, DVec3::ZERO, 0.5);
+        assert!((one.volume() - 0.5 / 3.0).abs() < 1e-6, "{}", one.volume());
+    }
+}
