@@ -3,8 +3,8 @@
 #
 #     benches/peers.sh PEERS [ROUNDS]
 #
-# PEERS is a folder with fuse.c (the clipped loop in C) and rust/ (parry3d). VTK is taken from the
-# Python that PYTHON names; without it, or without one of the others, those rows are left out.
+# PEERS is a folder with fuse.c (the clipped loop in C), rust/ (parry3d) and bench_mvc.py (scipy). VTK and
+# scipy are taken from the Python that PYTHON names; without it, or without one of the others, those rows are left out.
 #
 #   PYTHON    with vtk and numpy           [PEER_CACHE/venv/bin/python, else python3]
 #   PREFIX    put before what is measured, as 'chrt -r 1' on a busy machine
@@ -27,6 +27,12 @@ cc -O3 -march=native -fopenmp -o "$cache/fuse" "$peers/fuse.c" -lm || echo "no C
 if [ ! -x "$cache/target/release/rbench" ]; then
   cargo build --quiet --release --manifest-path "$peers/rust/Cargo.toml" --target-dir "$cache/target" ||
     echo "the peers in Rust cannot be built: parry3d is left out" >&2
+fi
+if [ -f "$peers/bench_mvc.py" ] && "$python" -c 'import scipy' 2>/dev/null; then
+  cargo build --quiet --manifest-path "$here/../Cargo.toml" -p midair-bench --example mvc
+  "$python" "$here/mvc.py" --ours "$target/debug/examples/mvc" --peer "$peers/bench_mvc.py"
+else
+  echo "no scipy: fair curves are left out" >&2
 fi
 exec "$python" "$here/peers.py" --ours "$target/debug/examples/bench" --loop "$cache/fuse" \
   --parry "$cache/target/release/rbench" --rounds "$rounds" --threads "$threads" --prefix "${PREFIX:-}"

@@ -22,6 +22,7 @@ use midair_flatscreen::FlatscreenPlugin;
 use midair_library::Volumes;
 use midair_space::SpacePlugin;
 use midair_openxr::{Headset, HeadsetPlugin};
+use midair_scaffold::ScaffoldPlugin;
 use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
@@ -43,7 +44,7 @@ impl Plugin for MidairPlugins {
     fn build(&self, app: &mut App) {
         // A user's bad input never ends the app: what a system reports is logged.
         app.insert_resource(FallbackErrorHandler(warn))
-            .add_plugins((StudioPlugin, AssemblePlugin));
+            .add_plugins((StudioPlugin, AssemblePlugin, ScaffoldPlugin));
     }
 }
 
@@ -112,7 +113,7 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
         // The app's own lines are what a person should see.
         filter: format!(
-            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_library=warn,midair_space=warn{}",
+            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_scaffold=warn,midair_library=warn,midair_space=warn{}",
             // Without a window the command itself says what was noticed, once.
             if stage.is_live() { ",midair_openxr=info" } else { ",midair_studio::notice=off" }
         ),

@@ -296,6 +296,25 @@ impl History {
         self.redo.iter().rev().map(|s| &*s.name)
     }
 
+    /// The document after each step that can be taken back, with the step's name, oldest first; before them
+    /// the state they began from, without a name. States share what they have in common.
+    pub fn past(&self) -> Vec<(String, Document)> {
+        let mut document = self.document.clone();
+        let mut past = Vec::with_capacity(self.undo.len() + 1);
+        for step in self.undo.iter().rev() {
+            past.push((step.name.clone(), document.clone()));
+            if !step.edits.iter().all(|e| document.apply(e).is_ok()) {
+                // Only a fault in an edit's inverse leads here: what is known up to there is told.
+                break;
+            }
+        }
+        if past.len() == self.undo.len() {
+            past.push((String::new(), document));
+        }
+        past.reverse();
+        past
+    }
+
     /// How many transactions were committed in this session.
     pub fn committed(&self) -> u64 {
         self.committed

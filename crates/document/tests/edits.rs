@@ -2,9 +2,10 @@
 
 mod support;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use midair_document::{
-    Document, Edit, EditError, Group, GroupId, History, LayerId, MeshStore, Object, ObjectId,
+    ConstructionLine, Document, DrawnStroke, Edit, EditError, Group, GroupId, History, Kind,
+    LayerId, MeshStore, Object, ObjectId,
 };
 use midair_field::{Op, Placement};
 use proptest::prelude::*;
@@ -346,4 +347,75 @@ fn edits_are_readable_text() {
     let text = ron::to_string(&edit).unwrap();
     assert!(text.contains("Sphere(radius:0.25)"), "{text}");
     assert_eq!(ron::from_str::<Edit>(&text).unwrap(), edit);
+}
+
+#[test]
+fn what_is_no_line_or_stroke_is_refused_with_one_line() {
+    let mut history = history();
+    for (kind, says) in [
+        (support::line(0.2, 7), "not a place"),
+        (support::stroke(0.2, 7), "not a place"),
+        (
+            Kind::Stroke(DrawnStroke::raw(vec![DVec3::ZERO], 0.01).into()),
+            "2 to",
+        ),
+        (
+            Kind::Stroke(DrawnStroke::raw(vec![DVec3::ZERO; 2], 0.0).into()),
+            "width",
+        ),
+        (
+            Kind::Line(ConstructionLine {
+                ticks: vec![1.5],
+                ..ConstructionLine::raw(DVec3::ZERO, DVec3::X)
+            }),
+            "tick mark",
+        ),
+    ] {
+        let refused = history.add(Object::new("", kind)).unwrap_err().to_string();
+        assert!(refused.contains(says), "{refused}");
+    }
+    assert!(history.document().is_empty());
+}
+
+#[test]
+fn the_past_is_told_from_the_oldest_step_on() {
+    let mut history = history();
+    let line = history
+        .add(Object::new("Line", support::line(0.2, 0)))
+        .unwrap();
+    history
+        .apply(Edit::Rename {
+            id: line,
+            name: "Edge".into(),
+        })
+        .unwrap();
+    history.apply(Edit::Remove { id: line }).unwrap();
+    history.undo();
+    let past = history.past();
+    let names: Vec<&str> = past.iter().map(|(name, _)| &**name).collect();
+    assert_eq!(names, ["", "Add", "Rename"]);
+    assert!(past[0].1.is_empty() && past[1].1.object(line).unwrap().name == "Line");
+    assert_eq!(&past[2].1, history.document());
+}
+
+#[test]
+fn a_drawing_of_hundreds_is_counted_and_undone() {
+    let mut history = history();
+    for i in 0..300 {
+        history
+            .add(Object::new("Line", support::line(0.2, 8 * i)))
+            .unwrap();
+    }
+    let points: Vec<DVec3> = (0..500).map(|i| DVec3::X * f64::from(i)).collect();
+    for _ in 0..80 {
+        let kind = Kind::Stroke(DrawnStroke::raw(points.clone(), 0.01).into());
+        history.add(Object::new("Stroke", kind)).unwrap();
+    }
+    // Taking a stroke away keeps it for the undo: its points are in the count.
+    let before = history.bytes();
+    let last = history.document().objects().next_back().unwrap().0;
+    history.apply(Edit::Remove { id: last }).unwrap();
+    assert!(history.bytes() - before > 500 * 24);
+    while history.undo().is_some() {}
+    assert!(history.document().is_empty());
 }

@@ -1,9 +1,10 @@
 //! Documents and edits for tests.
 #![allow(dead_code, missing_docs)]
 
-use glam::{Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use midair_document::{
-    Colour, Document, Edit, Group, GroupId, Kind, Layer, LayerId, MeshStore, Object, ObjectId,
+    Colour, ConstructionLine, Document, DrawnStroke, Edit, Group, GroupId, Kept, Kind, Layer,
+    LayerId, MeshStore, Object, ObjectId, Relation, Through,
 };
 use midair_field::{Node, Op, Operand, Placement, Primitive, Recipe};
 use midair_mesh::TriMesh;
@@ -53,6 +54,38 @@ pub fn fuse(parts: impl IntoIterator<Item = (Op, Placement, Recipe)>) -> Recipe 
     Recipe::new(Node::Solid(parts.into_iter().map(operand).collect()))
 }
 
+/// A construction line; one in eight is none.
+pub fn line(size: f32, n: u16) -> Kind {
+    let size = f64::from(size);
+    let end = if n % 8 == 7 { f64::NAN } else { size };
+    let mut line = ConstructionLine::raw(DVec3::ZERO, DVec3::new(end, 0.1 / 3.0, -size));
+    line.ticks = (0..n % 3).map(|i| (f64::from(i) + 1.0) / 7.0).collect();
+    line.kept.push(Kept {
+        relation: [Relation::Square, Relation::Meets][usize::from(n % 2)],
+        end: (n % 2 == 1).then_some(true),
+        with: (n % 4 > 1).then_some(ObjectId(u64::from(n))),
+    });
+    Kind::Line(line)
+}
+
+/// A stroke; one in eight is none.
+pub fn stroke(size: f32, n: u16) -> Kind {
+    let size = f64::from(size);
+    let end = if n % 8 == 7 { f64::INFINITY } else { size };
+    let points = [0.0, 1.0, 2.0, end].map(|x| DVec3::new(x * size, 1.0 / (3.0 + x), size));
+    let mut stroke = DrawnStroke::raw(points.to_vec(), 0.008);
+    if n % 2 == 0 {
+        stroke.segments = vec![points];
+        stroke.through.push(Through {
+            point: points[1],
+            of_scaffold: true,
+            along_line: n % 3 == 0,
+        });
+        stroke.reading.auto = true;
+    }
+    Kind::Stroke(stroke.into())
+}
+
 fn op(n: u16) -> Op {
     [Op::Union, Op::Intersect, Op::Subtract][n as usize % 3]
 }
@@ -78,7 +111,7 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
     let other = GroupId(pick(document.groups().map(|(id, _)| id.0).collect(), a));
     let next = document.next_id();
     let number = f32::from(b % 50) * 0.01 + 0.01;
-    match kind % 27 {
+    match kind % 30 {
         0..=3 => Edit::Add {
             id: ObjectId(next),
             object: Object::solid(format!("Ball {b}"), ball(number))
@@ -148,6 +181,22 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
         25 => Edit::SetDimmed {
             id,
             dimmed: b % 2 == 0,
+        },
+        26 => Edit::Add {
+            id: ObjectId(next),
+            object: Object::new("Line", line(number, a)).into(),
+        },
+        27 => Edit::Add {
+            id: ObjectId(next),
+            object: Object::new("Stroke", stroke(number, b)).into(),
+        },
+        28 => Edit::SetKind {
+            id,
+            kind: if b % 2 == 0 {
+                line(number, b)
+            } else {
+                stroke(number, a)
+            },
         },
         24 => Edit::SetPlacement {
             id,

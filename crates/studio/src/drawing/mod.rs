@@ -168,10 +168,7 @@ impl Drawing {
                     ticks: line.keypoints().skip(3).map(at).collect(),
                 });
             }
-            let Some(shared) = document
-                .object_shared(id)
-                .filter(|o| o.stroke().is_some())
-            else {
+            let Some(shared) = document.object_shared(id).filter(|o| o.stroke().is_some()) else {
                 continue;
             };
             let made = known

@@ -95,7 +95,16 @@ fn octahedron(mesh: &mut TriMesh, at: DVec3, size: f64) {
             mesh.normals.push(side.as_vec3());
         }
     }
-    for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
+    for (x, y, z) in [
+        (0, 2, 4),
+        (2, 1, 4),
+        (1, 3, 4),
+        (3, 0, 4),
+        (2, 0, 5),
+        (1, 2, 5),
+        (3, 1, 5),
+        (0, 3, 5),
+    ] {
         mesh.triangles.push([first + x, first + y, first + z]);
     }
 }
@@ -111,7 +120,10 @@ mod tests {
             ..ConstructionLine::raw(DVec3::ZERO, DVec3::X)
         };
         let mesh = line_mesh(&line, 1.0);
-        assert_eq!(mesh.triangles.len(), tube(&line.ends(), THIN, false, 6).triangles.len() + 4 * 8);
+        assert_eq!(
+            mesh.triangles.len(),
+            tube(&line.ends(), THIN, false, 6).triangles.len() + 4 * 8
+        );
         assert!(mesh.volume() > 0.0);
         let mut one = TriMesh::default();
         octahedron(&mut one, DVec3::ZERO, 0.5);

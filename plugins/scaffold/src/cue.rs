@@ -1,0 +1,100 @@
+//! What Scaffold says of its phase: what is touched and selected, and what each button does now.
+
+use bevy::prelude::*;
+use midair_studio::hands::{Action, Side};
+use midair_studio::pick::Touch;
+use midair_studio::project::{Project, Selection};
+use midair_studio::settings::{Draws, Settings};
+use midair_studio::show::{Cues, Tint};
+use midair_studio::tools::Hints;
+
+use crate::phase::{Draft, Phase};
+
+pub(crate) fn colours(
+    project: Res<Project>,
+    touch: Res<Touch>,
+    selection: Res<Selection>,
+    mut cues: ResMut<Cues>,
+) {
+    let mut next = Cues::default();
+    for (id, object) in project.document().objects() {
+        if object.fresh {
+            next.entry(id).tint = Tint::Fresh;
+        }
+    }
+    for touched in Side::BOTH.iter().filter_map(|&s| touch.get(s)) {
+        next.entry(touched.object).touched = true;
+    }
+    for &object in &selection.0 {
+        next.entry(object).selected = true;
+    }
+    if *cues != next {
+        *cues = next;
+    }
+}
+
+pub(crate) fn hints(
+    settings: Res<Settings>,
+    touch: Res<Touch>,
+    draft: Res<Draft>,
+    mut hints: ResMut<Hints>,
+) {
+    let mut next = Hints::default();
+    let auto = settings.scaffold.auto;
+    let corrected = if auto { "corrected" } else { "as drawn" };
+    match &draft.phase {
+        Phase::Line { raw, .. } => {
+            let becomes = match &draft.preview {
+                _ if *raw || !auto => "as drawn".to_owned(),
+                Some(reading) => reading.words.clone(),
+                None => "a tick mark, or a point to join".to_owned(),
+            };
+            next.begin(format!("A line: {becomes}"))
+                .say(Action::Act, "let go to end it")
+                .say(Action::Free, "keep it as drawn")
+                .say(Action::Cancel, "give it up");
+        }
+        Phase::Stroke { raw, .. } => {
+            let becomes = if *raw { "as drawn" } else { corrected };
+            next.begin(format!("A stroke, {becomes}"))
+                .say(Action::Act, "let go to end it")
+                .say(Action::Free, "keep it as drawn")
+                .say(Action::Cancel, "give it up");
+        }
+        Phase::Idle => {
+            let (what, other) = match settings.scaffold.draws {
+                Draws::Line => ("line", "draw strokes"),
+                Draws::Stroke => ("stroke", "draw lines"),
+            };
+            let status = if draft.picked.is_some() {
+                "Scaffold: press on the second point".to_owned()
+            } else {
+                format!("Scaffold: {what}s, {corrected}")
+            };
+            next.begin(status)
+                .say(Action::Act, format!("draw a {what}"))
+                .say(Action::Up, other)
+                .say(
+                    Action::Down,
+                    if auto {
+                        "auto-correct off"
+                    } else {
+                        "auto-correct on"
+                    },
+                );
+            if let Some(last) = &draft.last {
+                let of = last.readings.len();
+                if of > 1 {
+                    let at = last.chosen + 1;
+                    next.say(Action::Right, format!("other reading ({at} of {of})"));
+                }
+            }
+            if Side::BOTH.iter().any(|&s| touch.get(s).is_some()) {
+                next.say(Action::Grab, "move").say(Action::Delete, "delete");
+            }
+        }
+    }
+    if *hints != next {
+        *hints = next;
+    }
+}
