@@ -19,6 +19,7 @@ mod pad_session;
 mod preview;
 mod references;
 mod room;
+mod scaffold;
 mod sequence;
 mod shapes;
 mod small;

@@ -145,6 +145,11 @@ impl Studio {
         }
     }
 
+    /// One frame and nothing beside it, to be timed.
+    pub fn app_update(&mut self) {
+        self.app.update();
+    }
+
     pub fn frames(&mut self, n: usize) {
         for _ in 0..n {
             self.frame();

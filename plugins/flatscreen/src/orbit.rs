@@ -234,6 +234,12 @@ pub(crate) fn steer(
     transform.set_if_neq(orbit.transform());
 }
 
+/// Under how many radians a pixel in the middle of the view is seen.
+pub(crate) fn pixel(camera: &Camera) -> f32 {
+    let height = camera.logical_viewport_size().map_or(720.0, |size| size.y);
+    2.0 * (0.5 * FIELD_OF_VIEW).tan() / height.max(1.0)
+}
+
 /// How far the wheel was turned, whatever it counts in.
 pub(crate) fn lines(scroll: &AccumulatedMouseScroll) -> f32 {
     match scroll.unit {

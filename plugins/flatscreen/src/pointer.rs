@@ -19,7 +19,7 @@ use midair_studio::{
 use crate::band::{self, Band};
 use crate::bindings::{Control, Controls, Device};
 use crate::gizmo::Gizmo;
-use crate::orbit::{Orbit, lines};
+use crate::orbit::{Orbit, lines, pixel};
 use crate::panels::Screen;
 use crate::place;
 
@@ -374,6 +374,7 @@ pub(crate) fn point(
         position: eye.translation,
         rotation: eye.rotation,
     });
+    input.pixel = pixel(camera);
 }
 
 impl Grip {

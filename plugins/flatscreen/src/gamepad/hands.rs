@@ -16,7 +16,7 @@ use super::camera::{rest, sticks};
 use super::{Pad, Pressed};
 use crate::bindings::{Control, Controls, Device};
 use crate::focus::Focus;
-use crate::orbit::{FIELD_OF_VIEW, Orbit};
+use crate::orbit::{FIELD_OF_VIEW, Orbit, pixel};
 use crate::panels::Screen;
 use crate::place;
 use crate::ring::Ring;
@@ -134,6 +134,7 @@ pub(crate) fn hands(
         position: eye.translation,
         rotation: eye.rotation,
     });
+    input.pixel = pixel(camera);
 }
 
 impl Pad {

@@ -1,0 +1,417 @@
+//! Scaffold through the hands: lines, tick marks, strokes, readings, and what is no drawing at all.
+
+use std::time::Instant;
+
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use midair_document::{ConstructionLine, DrawnStroke, Edit, Kind, Object, ObjectId, Relation};
+use midair_field::Placement;
+use midair_scaffold::{Ask, SCAFFOLD};
+use midair_studio::command::Command;
+use midair_studio::drawing::Drawing;
+use midair_studio::hands::{Action, Pose, Side};
+use midair_studio::objects;
+use midair_studio::project::{Project, Selection};
+use midair_studio::settings::{Draws, LinesShown, Settings};
+
+use crate::studio::Studio;
+
+const R: Side = Side::Right;
+
+impl Studio {
+    /// Scaffold in hand.
+    fn drawing() -> Self {
+        let mut s = Self::new();
+        s.ask(Command::Mode(SCAFFOLD));
+        s.frames(2);
+        s
+    }
+
+    fn pull(&mut self, from: Vec3, to: Vec3) {
+        self.reach(R, from);
+        self.press(R, Action::Act);
+        self.carry_right(to);
+        self.let_go(R, Action::Act);
+        self.frame();
+    }
+
+    fn scribble(&mut self, points: impl IntoIterator<Item = Vec3>) {
+        let mut points = points.into_iter();
+        self.reach(R, points.next().unwrap());
+        self.press(R, Action::Act);
+        for p in points {
+            self.put(R, Pose::at(p));
+            self.frame();
+        }
+        self.let_go(R, Action::Act);
+        self.frame();
+    }
+
+    fn draws(&mut self, draws: Draws) {
+        self.ask(Settings::command("scaffold.draws", draws));
+    }
+
+    fn asked(&mut self, ask: Ask) {
+        self.ask(ask.command());
+        self.frame();
+    }
+
+    fn lines(&self) -> Vec<ConstructionLine> {
+        let all = self.document().objects();
+        all.filter_map(|(_, o)| o.line().cloned()).collect()
+    }
+
+    fn strokes(&self) -> Vec<DrawnStroke> {
+        let all = self.document().objects();
+        all.filter_map(|(_, o)| o.stroke().cloned()).collect()
+    }
+
+    fn last(&self) -> ObjectId {
+        self.document().objects().next_back().unwrap().0
+    }
+}
+
+fn v(x: f32, y: f32, z: f32) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// A square of 0.4 m in the plane z = 0, every end off by a centimetre.
+fn square(s: &mut Studio) {
+    let c = [v(-0.2, 0.8, 0.0), v(0.2, 0.8, 0.0), v(0.2, 1.2, 0.0), v(-0.2, 1.2, 0.0)];
+    let off = [v(0.008, -0.004, 0.003), v(-0.005, 0.006, -0.006), v(0.004, 0.008, 0.004), v(-0.007, -0.003, 0.005)];
+    for i in 0..4 {
+        s.pull(c[i] + off[i], c[(i + 1) % 4] - off[(i + 2) % 4]);
+    }
+}
+
+#[test]
+fn four_lines_drawn_with_a_shaking_hand_are_a_square() {
+    let mut s = Studio::drawing();
+    square(&mut s);
+    let lines = s.lines();
+    assert_eq!(lines.len(), 4, "{:?}", s.warnings());
+    let sides: Vec<DVec3> = lines.iter().map(|l| l.b - l.a).collect();
+    for i in 0..4 {
+        let (a, b) = (sides[i], sides[(i + 1) % 4]);
+        assert!(a.normalize().dot(b.normalize()).abs() < 1e-6, "{lines:?}");
+        assert!((a.length() - b.length()).abs() < 1e-6);
+        assert!(lines[i].b.distance(lines[(i + 1) % 4].a) < 1e-6);
+        assert!(lines[i].reading.auto);
+        // What the hand drew is kept as it was drawn.
+        assert!(lines[i].raw[0].distance(lines[i].a) > 1e-4);
+    }
+    let kept: Vec<Relation> = lines[3].kept.iter().map(|k| k.relation).collect();
+    for relation in [Relation::Meets, Relation::Square, Relation::Parallel, Relation::Equal] {
+        assert!(kept.contains(&relation), "{kept:?}");
+    }
+    assert_eq!(s.undo_len(), 4);
+    for _ in 0..4 {
+        s.ask(Command::Undo);
+    }
+    assert!(s.document().is_empty());
+    s.ask(Command::Redo);
+    assert_eq!(s.lines().len(), 1);
+}
+
+#[test]
+fn the_other_trigger_and_the_switch_keep_a_line_as_drawn() {
+    let mut s = Studio::drawing();
+    let (a, b) = (v(0.0, 1.0, 0.0), v(0.02, 1.5, 0.01));
+    s.reach(R, a);
+    s.press(R, Action::Act);
+    s.press(Side::Left, Action::Act);
+    s.let_go(Side::Left, Action::Act);
+    s.carry_right(b);
+    s.let_go(R, Action::Act);
+    s.click(R, Action::Down);
+    assert!(!s.world().resource::<Settings>().scaffold.auto);
+    s.pull(a + Vec3::X * 0.5, b + Vec3::X * 0.5);
+    s.click(R, Action::Down);
+    s.pull(a + Vec3::X, b + Vec3::X);
+    let lines = s.lines();
+    assert_eq!(lines.len(), 3);
+    for line in &lines[..2] {
+        assert_eq!([line.a, line.b], line.raw);
+        assert!(line.kept.is_empty() && !line.reading.auto);
+    }
+    let upright = (lines[2].b - lines[2].a).normalize();
+    assert!(upright.cross(DVec3::Y).length() < 1e-9);
+}
+
+#[test]
+fn other_readings_are_a_press_away_and_each_is_a_step() {
+    let mut s = Studio::drawing();
+    square(&mut s);
+    // Nearly the diagonal's way, and an end near two keypoints.
+    s.pull(v(-0.19, 0.81, 0.01), v(0.03, 1.22, -0.01));
+    let best = s.lines()[4].clone();
+    s.click(R, Action::Right);
+    let next = s.lines()[4].clone();
+    assert_ne!(best, next);
+    // Backwards from the best is what was drawn.
+    s.click(R, Action::Left);
+    assert_eq!(s.lines()[4], best);
+    s.click(R, Action::Left);
+    let raw = s.lines()[4].clone();
+    assert_eq!([raw.a, raw.b], raw.raw);
+    let steps = s.undo_len();
+    s.ask(Command::Undo);
+    assert_eq!((s.lines()[4].clone(), s.undo_len()), (best.clone(), steps - 1));
+    // After the undo it is known which reading it is.
+    s.click(R, Action::Right);
+    assert_eq!(s.lines()[4], next);
+    // The left hand's arrows are not for that.
+    s.click(Side::Left, Action::Right);
+    assert_eq!(s.lines()[4], next);
+    s.asked(Ask::Again(0.0));
+    assert_eq!(s.lines()[4].raw, [s.lines()[4].a, s.lines()[4].b]);
+    s.asked(Ask::Again(1.0));
+    assert_eq!(s.lines()[4], best);
+}
+
+#[test]
+fn a_short_line_across_a_line_is_a_tick_mark_and_two_presses_join_two_points() {
+    let mut s = Studio::drawing();
+    s.pull(v(0.0, 1.0, 0.0), v(0.6, 1.0, 0.0));
+    s.pull(v(0.15, 0.99, 0.0), v(0.15, 1.008, 0.0));
+    let line = &s.lines()[0];
+    assert_eq!(line.ticks.len(), 1);
+    let at = line.a.lerp(line.b, line.ticks[0]);
+    assert!(at.distance(DVec3::new(0.15, line.a.y, line.a.z)) < 2e-3, "{at}");
+    assert_eq!(s.world().resource::<Drawing>().keypoints().count(), 4);
+    s.ask(Command::Undo);
+    assert!(s.lines()[0].ticks.is_empty());
+    s.ask(Command::Redo);
+    // A second line beside it, then a press on an end of each.
+    s.pull(v(0.0, 1.3, 0.2), v(0.6, 1.3, 0.2));
+    for at in [v(0.005, 1.0, 0.0), v(0.603, 1.3, 0.2)] {
+        s.reach(R, at);
+        s.click(R, Action::Act);
+        s.frame();
+    }
+    let lines = s.lines();
+    assert_eq!(lines.len(), 3, "{:?}", s.warnings());
+    assert!(lines[2].a.distance(lines[0].a) < 1e-9 && lines[2].b.distance(lines[1].b) < 1e-9);
+}
+
+#[test]
+fn a_wobbling_circle_through_the_middles_is_round() {
+    let mut s = Studio::drawing();
+    square(&mut s);
+    let middles: Vec<DVec3> = s.lines().iter().map(|l| l.a.midpoint(l.b)).collect();
+    let centre = middles.iter().sum::<DVec3>() / 4.0;
+    let radius = middles[0].distance(centre);
+    s.click(R, Action::Up);
+    let c = centre.as_vec3();
+    s.scribble((0..=120).map(|i| {
+        let t = std::f32::consts::TAU * i as f32 / 120.0;
+        let wide = 0.2 + 0.008 * (5.0 * t).sin();
+        c + v(wide * t.cos(), wide * t.sin(), 0.006 * (3.0 * t).cos())
+    }));
+    let strokes = s.strokes();
+    assert_eq!(strokes.len(), 1, "{:?}", s.warnings());
+    let stroke = &strokes[0];
+    assert!(stroke.closed && stroke.segments.len() == 4, "{} {}", stroke.closed, stroke.segments.len());
+    for p in stroke.points() {
+        assert!((p.distance(centre) / radius - 1.0).abs() < 1e-3, "{}", p.distance(centre));
+    }
+    assert!(stroke.raw.len() > 60);
+    // It can be filled, and the plate is an operand like any other.
+    s.asked(Ask::Fill);
+    let plate = s.last();
+    assert!(s.object(plate).recipe().is_some(), "{:?}", s.warnings());
+    s.settle();
+    let report = s.faultless(plate, 0.01);
+    let volume = s.mesh(plate, 0.005).volume();
+    let exact = std::f64::consts::PI * radius * radius * 0.01;
+    assert!((volume / exact - 1.0).abs() < 0.05, "{volume} {exact} {report:?}");
+    assert_eq!(s.world().resource::<Selection>().0, [plate]);
+}
+
+#[test]
+fn a_drawing_is_saved_opened_and_exported_as_it_is() {
+    let mut s = Studio::drawing();
+    square(&mut s);
+    s.draws(Draws::Stroke);
+    s.scribble((0..=60).map(|i| v(-0.2 + 0.4 * i as f32 / 60.0, 0.8 + 0.01 * (i as f32 * 0.2).sin(), 0.0)));
+    s.asked(Ask::Width(0.02));
+    let drawn = s.document().clone();
+    let file = s.home.path().join("drawing.midair");
+    s.ask(Command::SaveAs(file.clone()));
+    s.settle();
+    let home = s.home.path().to_owned();
+    for name in ["drawing.obj", "drawing.glb", "drawing.stl"] {
+        s.ask(Command::Export {
+            path: home.join(name),
+            step: None,
+            unit: None,
+            only: None,
+        });
+        s.settle();
+        assert!(home.join(name).exists(), "{name}: {:?}", s.warnings());
+    }
+    let text = std::fs::read_to_string(home.join("drawing.obj")).unwrap();
+    assert_eq!(text.lines().filter(|l| l.starts_with("l ")).count(), 5);
+    s.asked(Ask::History(Some(home.join("history.json"))));
+    s.settle();
+    for _ in 0..200 {
+        if home.join("history.json").exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        s.frame();
+    }
+    let told = std::fs::read_to_string(home.join("history.json")).unwrap();
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(told["steps"].as_array().unwrap().len(), 6);
+    assert_eq!(told["steps"][0]["drawn"][0]["kind"], "line");
+    s.ask(Command::New);
+    s.settle();
+    assert!(s.document().is_empty());
+    s.ask(Command::Open(file));
+    s.settle();
+    assert_eq!(s.document(), &drawn);
+}
+
+#[test]
+fn lines_are_touched_moved_selected_and_deleted_like_any_object() {
+    let mut s = Studio::drawing();
+    s.pull(v(0.0, 1.0, 0.0), v(0.6, 1.0, 0.0));
+    let line = s.last();
+    s.reach(R, v(0.3, 1.01, 0.0));
+    assert_eq!(s.touched(R), Some(line));
+    // Moved by its placement it is found where it stands.
+    s.ask(Command::Objects(objects::Ask::Place(vec![(line, Placement::at(v(0.0, 0.5, 0.0)))])));
+    s.frame();
+    assert_eq!(s.touched(R), None);
+    s.reach(R, v(0.3, 1.51, 0.0));
+    assert_eq!(s.touched(R), Some(line));
+    // A line beside it is corrected into it where it stands now.
+    s.pull(v(0.01, 1.51, 0.01), v(0.01, 1.9, 0.0));
+    let lines = s.lines();
+    assert!((lines[1].a - (lines[0].a + DVec3::Y * 0.5)).length() < 1e-9, "{lines:?}");
+    s.ask(Command::Objects(objects::Ask::Delete));
+    s.ask(Command::Objects(objects::Ask::Select { ids: vec![line], how: objects::How::Set }));
+    s.ask(Command::Objects(objects::Ask::Delete));
+    assert_eq!(s.lines().len(), 1);
+}
+
+#[test]
+fn lengths_and_angles_are_set_and_lines_hidden_and_grouped() {
+    let mut s = Studio::drawing();
+    s.pull(v(0.0, 1.0, 0.0), v(0.6, 1.0, 0.0));
+    s.asked(Ask::Length(0.5));
+    s.asked(Ask::Angles { rise: 30.0, heading: 90.0 });
+    let line = s.lines()[0].clone();
+    let along = line.b - line.a;
+    assert!((along.length() - 0.5).abs() < 1e-9);
+    assert!(along.distance(DVec3::new(0.0, 0.25, -0.5 * 30.0_f64.to_radians().cos())) < 1e-9, "{along}");
+    s.pull(v(0.5, 1.0, 0.0), v(0.5, 1.4, 0.0));
+    let ids: Vec<ObjectId> = s.document().objects().map(|(id, _)| id).collect();
+    s.ask(Command::Objects(objects::Ask::Select { ids: ids.clone(), how: objects::How::Set }));
+    s.asked(Ask::Between(45.0));
+    let lines = s.lines();
+    let d: Vec<DVec3> = lines.iter().map(|l| (l.b - l.a).normalize()).collect();
+    assert!((d[0].dot(d[1]).abs() - 45.0_f64.to_radians().cos()).abs() < 1e-9);
+    s.asked(Ask::Group);
+    assert!(s.document().outermost_group(ids[0]).is_some());
+    s.ask(Settings::command("scaffold.lines", LinesShown::Hidden));
+    s.frame();
+    assert!(s.world().resource::<Drawing>().lines().is_empty());
+    s.asked(Ask::Length(f64::NAN));
+    s.asked(Ask::Again(f64::NAN));
+    s.ask(Command::Tool { tool: SCAFFOLD, ask: "dance".into() });
+    assert_eq!(s.warnings().len(), 1, "{:?}", s.warnings());
+}
+
+#[test]
+fn what_is_no_drawing_changes_nothing_and_says_so() {
+    let mut s = Studio::drawing();
+    // A press on one spot in the air, and hundreds of frames at one spot.
+    s.reach(R, v(0.0, 1.0, 0.0));
+    s.click(R, Action::Act);
+    s.draws(Draws::Stroke);
+    s.scribble(std::iter::repeat_n(v(0.0, 1.0, 0.0), 400));
+    s.click(R, Action::Act);
+    assert!(s.document().is_empty());
+    // The tracking goes wild in the middle of a stroke, and of a line.
+    for draws in [Draws::Stroke, Draws::Line] {
+        s.draws(draws);
+        s.reach(R, v(0.0, 1.0, 0.0));
+        s.press(R, Action::Act);
+        s.carry_right(v(0.2, 1.1, 0.0));
+        s.put(R, Pose::at(Vec3::NAN));
+        s.frames(3);
+        s.input().side(R).pose = None;
+        s.frames(3);
+        s.carry(None, Some(Pose::at(v(0.4, 1.0, 0.0))));
+        s.let_go(R, Action::Act);
+        s.frame();
+    }
+    assert_eq!(s.document().len(), 2, "{:?}", s.warnings());
+    // Given up it leaves nothing; so does leaving the mode.
+    s.reach(R, v(1.0, 1.0, 0.0));
+    s.press(R, Action::Act);
+    s.carry_right(v(1.5, 1.0, 0.0));
+    s.press(R, Action::Cancel);
+    s.let_go(R, Action::Act);
+    s.let_go(R, Action::Cancel);
+    s.press(R, Action::Act);
+    s.ask(Command::Mode(crate::studio::ELSEWHERE));
+    s.frames(2);
+    s.let_go(R, Action::Act);
+    assert_eq!(s.document().len(), 2);
+    // The same line twice is one line.
+    s.ask(Command::Mode(SCAFFOLD));
+    s.frames(2);
+    for _ in 0..2 {
+        s.pull(v(1.0, 1.0, 0.0), v(1.5, 1.0, 0.0));
+    }
+    assert_eq!(s.document().len(), 3);
+}
+
+#[test]
+fn three_hundred_lines_and_eighty_strokes_keep_the_frame() {
+    let mut s = Studio::drawing();
+    let mut edits = Vec::new();
+    for i in 0..380_u64 {
+        let f = i as f64;
+        let at = DVec3::new(0.3 * (f % 19.0), 0.4 + 0.2 * (f / 19.0).floor(), 0.05 * (f % 7.0));
+        let kind = if i < 300 {
+            Kind::Line(ConstructionLine::raw(at, at + DVec3::new(0.25, 0.01 * (f % 5.0), 0.1)))
+        } else {
+            let points = (0..200).map(|k| at + 0.1 * DVec3::new((0.1 * f64::from(k)).cos(), 0.01 * f64::from(k), (0.1 * f64::from(k)).sin()));
+            Kind::Stroke(DrawnStroke::raw(points.collect(), 0.008).into())
+        };
+        let object = Object::new(format!("Drawn {i}"), kind).into();
+        let id = ObjectId(s.document().next_id() + i);
+        edits.push(Edit::Add { id, object });
+    }
+    s.ask(Command::Edit(Edit::Composite { name: "Set up".into(), edits }));
+    s.settle();
+    assert_eq!(s.document().len(), 380);
+    let file = s.home.path().join("large.midair");
+    s.ask(Command::SaveAs(file.clone()));
+    s.settle();
+    // Drawing one more line costs frames no more than a fraction of their time.
+    let mut times = Vec::new();
+    s.reach(R, v(1.0, 1.0, 0.4));
+    s.press(R, Action::Act);
+    for i in 0..60 {
+        s.put(R, Pose::at(v(1.0 + 0.005 * i as f32, 1.0, 0.4)));
+        let since = Instant::now();
+        s.app_update();
+        times.push(since.elapsed().as_secs_f64() * 1e3);
+    }
+    s.let_go(R, Action::Act);
+    times.sort_by(f64::total_cmp);
+    println!("a frame with 300 lines and 80 strokes while one draws: median {:.2} ms, 90 % {:.2} ms", times[30], times[54]);
+    assert_eq!(s.document().len(), 381);
+    s.ask(Command::Undo);
+    let drawn = s.document().clone();
+    s.ask(Command::Open(file));
+    s.settle();
+    let opened = s.world().resource::<Project>().document();
+    assert_eq!(opened.len(), drawn.len());
+    assert!(times[30] < 50.0, "{times:?}");
+}
