@@ -9,9 +9,7 @@ use midair_csg::Preview;
 use midair_document::{Kind, Object, affine};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{TriMesh, check};
-use midair_playback::{
-    FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport,
-};
+use midair_playback::{FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport};
 use midair_solid::Solid;
 use midair_studio::evaluate::Evaluations;
 use midair_studio::project::Project;

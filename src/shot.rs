@@ -14,6 +14,7 @@ use midair_space::Stance;
 use midair_space::room::Root;
 use midair_studio::command::Command;
 use midair_studio::evaluate::{Delivery, Evaluations};
+use midair_studio::objects::extent;
 use midair_studio::project::Project;
 use midair_studio::show::{Eye, camera, headset};
 
@@ -167,8 +168,19 @@ fn store(image: Image, file: &Path) -> Result<()> {
 fn frame_all(world: &World) -> Transform {
     let mut low = Vec3::INFINITY;
     let mut high = Vec3::NEG_INFINITY;
-    for (_, object) in world.resource::<Project>().document().objects() {
-        let radius = Some(object.bounds())
+    let document = world.resource::<Project>().document();
+    for (id, object) in document.objects() {
+        // What is drawn stands anywhere in its own frame.
+        if object.recipe().is_none()
+            && let Some((least, most)) = extent(document, [id])
+        {
+            low = low.min(least);
+            high = high.max(most);
+            continue;
+        }
+        let radius = object
+            .recipe()
+            .map(|r| r.bounds())
             .filter(|b| !b.is_empty())
             .map_or(0.3, |b| {
                 0.8 * (b.min.abs().max(b.max.abs()) * object.placement.scale.abs()).length()

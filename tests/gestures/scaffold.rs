@@ -77,8 +77,18 @@ fn v(x: f32, y: f32, z: f32) -> Vec3 {
 
 /// A square of 0.4 m in the plane z = 0, every end off by a centimetre.
 fn square(s: &mut Studio) {
-    let c = [v(-0.2, 0.8, 0.0), v(0.2, 0.8, 0.0), v(0.2, 1.2, 0.0), v(-0.2, 1.2, 0.0)];
-    let off = [v(0.008, -0.004, 0.003), v(-0.005, 0.006, -0.006), v(0.004, 0.008, 0.004), v(-0.007, -0.003, 0.005)];
+    let c = [
+        v(-0.2, 0.8, 0.0),
+        v(0.2, 0.8, 0.0),
+        v(0.2, 1.2, 0.0),
+        v(-0.2, 1.2, 0.0),
+    ];
+    let off = [
+        v(0.008, -0.004, 0.003),
+        v(-0.005, 0.006, -0.006),
+        v(0.004, 0.008, 0.004),
+        v(-0.007, -0.003, 0.005),
+    ];
     for i in 0..4 {
         s.pull(c[i] + off[i], c[(i + 1) % 4] - off[(i + 2) % 4]);
     }
@@ -101,7 +111,12 @@ fn four_lines_drawn_with_a_shaking_hand_are_a_square() {
         assert!(lines[i].raw[0].distance(lines[i].a) > 1e-4);
     }
     let kept: Vec<Relation> = lines[3].kept.iter().map(|k| k.relation).collect();
-    for relation in [Relation::Meets, Relation::Square, Relation::Parallel, Relation::Equal] {
+    for relation in [
+        Relation::Meets,
+        Relation::Square,
+        Relation::Parallel,
+        Relation::Equal,
+    ] {
         assert!(kept.contains(&relation), "{kept:?}");
     }
     assert_eq!(s.undo_len(), 4);
@@ -156,7 +171,10 @@ fn other_readings_are_a_press_away_and_each_is_a_step() {
     assert_eq!([raw.a, raw.b], raw.raw);
     let steps = s.undo_len();
     s.ask(Command::Undo);
-    assert_eq!((s.lines()[4].clone(), s.undo_len()), (best.clone(), steps - 1));
+    assert_eq!(
+        (s.lines()[4].clone(), s.undo_len()),
+        (best.clone(), steps - 1)
+    );
     // After the undo it is known which reading it is.
     s.click(R, Action::Right);
     assert_eq!(s.lines()[4], next);
@@ -177,7 +195,10 @@ fn a_short_line_across_a_line_is_a_tick_mark_and_two_presses_join_two_points() {
     let line = &s.lines()[0];
     assert_eq!(line.ticks.len(), 1);
     let at = line.a.lerp(line.b, line.ticks[0]);
-    assert!(at.distance(DVec3::new(0.15, line.a.y, line.a.z)) < 2e-3, "{at}");
+    assert!(
+        at.distance(DVec3::new(0.15, line.a.y, line.a.z)) < 2e-3,
+        "{at}"
+    );
     assert_eq!(s.world().resource::<Drawing>().keypoints().count(), 4);
     s.ask(Command::Undo);
     assert!(s.lines()[0].ticks.is_empty());
@@ -211,9 +232,18 @@ fn a_wobbling_circle_through_the_middles_is_round() {
     let strokes = s.strokes();
     assert_eq!(strokes.len(), 1, "{:?}", s.warnings());
     let stroke = &strokes[0];
-    assert!(stroke.closed && stroke.segments.len() == 4, "{} {}", stroke.closed, stroke.segments.len());
+    assert!(
+        stroke.closed && stroke.segments.len() == 4,
+        "{} {}",
+        stroke.closed,
+        stroke.segments.len()
+    );
     for p in stroke.points() {
-        assert!((p.distance(centre) / radius - 1.0).abs() < 1e-3, "{}", p.distance(centre));
+        assert!(
+            (p.distance(centre) / radius - 1.0).abs() < 1e-3,
+            "{}",
+            p.distance(centre)
+        );
     }
     assert!(stroke.raw.len() > 60);
     // It can be filled, and the plate is an operand like any other.
@@ -224,7 +254,10 @@ fn a_wobbling_circle_through_the_middles_is_round() {
     let report = s.faultless(plate, 0.01);
     let volume = s.mesh(plate, 0.005).volume();
     let exact = std::f64::consts::PI * radius * radius * 0.01;
-    assert!((volume / exact - 1.0).abs() < 0.05, "{volume} {exact} {report:?}");
+    assert!(
+        (volume / exact - 1.0).abs() < 0.05,
+        "{volume} {exact} {report:?}"
+    );
     assert_eq!(s.world().resource::<Selection>().0, [plate]);
 }
 
@@ -233,7 +266,13 @@ fn a_drawing_is_saved_opened_and_exported_as_it_is() {
     let mut s = Studio::drawing();
     square(&mut s);
     s.draws(Draws::Stroke);
-    s.scribble((0..=60).map(|i| v(-0.2 + 0.4 * i as f32 / 60.0, 0.8 + 0.01 * (i as f32 * 0.2).sin(), 0.0)));
+    s.scribble((0..=60).map(|i| {
+        v(
+            -0.2 + 0.4 * i as f32 / 60.0,
+            0.8 + 0.01 * (i as f32 * 0.2).sin(),
+            0.0,
+        )
+    }));
     s.asked(Ask::Width(0.02));
     let drawn = s.document().clone();
     let file = s.home.path().join("drawing.midair");
@@ -281,7 +320,10 @@ fn lines_are_touched_moved_selected_and_deleted_like_any_object() {
     s.reach(R, v(0.3, 1.01, 0.0));
     assert_eq!(s.touched(R), Some(line));
     // Moved by its placement it is found where it stands.
-    s.ask(Command::Objects(objects::Ask::Place(vec![(line, Placement::at(v(0.0, 0.5, 0.0)))])));
+    s.ask(Command::Objects(objects::Ask::Place(vec![(
+        line,
+        Placement::at(v(0.0, 0.5, 0.0)),
+    )])));
     s.frame();
     assert_eq!(s.touched(R), None);
     s.reach(R, v(0.3, 1.51, 0.0));
@@ -289,9 +331,15 @@ fn lines_are_touched_moved_selected_and_deleted_like_any_object() {
     // A line beside it is corrected into it where it stands now.
     s.pull(v(0.01, 1.51, 0.01), v(0.01, 1.9, 0.0));
     let lines = s.lines();
-    assert!((lines[1].a - (lines[0].a + DVec3::Y * 0.5)).length() < 1e-9, "{lines:?}");
+    assert!(
+        (lines[1].a - (lines[0].a + DVec3::Y * 0.5)).length() < 1e-9,
+        "{lines:?}"
+    );
     s.ask(Command::Objects(objects::Ask::Delete));
-    s.ask(Command::Objects(objects::Ask::Select { ids: vec![line], how: objects::How::Set }));
+    s.ask(Command::Objects(objects::Ask::Select {
+        ids: vec![line],
+        how: objects::How::Set,
+    }));
     s.ask(Command::Objects(objects::Ask::Delete));
     assert_eq!(s.lines().len(), 1);
 }
@@ -301,14 +349,23 @@ fn lengths_and_angles_are_set_and_lines_hidden_and_grouped() {
     let mut s = Studio::drawing();
     s.pull(v(0.0, 1.0, 0.0), v(0.6, 1.0, 0.0));
     s.asked(Ask::Length(0.5));
-    s.asked(Ask::Angles { rise: 30.0, heading: 90.0 });
+    s.asked(Ask::Angles {
+        rise: 30.0,
+        heading: 90.0,
+    });
     let line = s.lines()[0].clone();
     let along = line.b - line.a;
     assert!((along.length() - 0.5).abs() < 1e-9);
-    assert!(along.distance(DVec3::new(0.0, 0.25, -0.5 * 30.0_f64.to_radians().cos())) < 1e-9, "{along}");
+    assert!(
+        along.distance(DVec3::new(0.0, 0.25, -0.5 * 30.0_f64.to_radians().cos())) < 1e-9,
+        "{along}"
+    );
     s.pull(v(0.5, 1.0, 0.0), v(0.5, 1.4, 0.0));
     let ids: Vec<ObjectId> = s.document().objects().map(|(id, _)| id).collect();
-    s.ask(Command::Objects(objects::Ask::Select { ids: ids.clone(), how: objects::How::Set }));
+    s.ask(Command::Objects(objects::Ask::Select {
+        ids: ids.clone(),
+        how: objects::How::Set,
+    }));
     s.asked(Ask::Between(45.0));
     let lines = s.lines();
     let d: Vec<DVec3> = lines.iter().map(|l| (l.b - l.a).normalize()).collect();
@@ -320,7 +377,10 @@ fn lengths_and_angles_are_set_and_lines_hidden_and_grouped() {
     assert!(s.world().resource::<Drawing>().lines().is_empty());
     s.asked(Ask::Length(f64::NAN));
     s.asked(Ask::Again(f64::NAN));
-    s.ask(Command::Tool { tool: SCAFFOLD, ask: "dance".into() });
+    s.ask(Command::Tool {
+        tool: SCAFFOLD,
+        ask: "dance".into(),
+    });
     assert_eq!(s.warnings().len(), 1, "{:?}", s.warnings());
 }
 
@@ -376,18 +436,35 @@ fn three_hundred_lines_and_eighty_strokes_keep_the_frame() {
     let mut edits = Vec::new();
     for i in 0..380_u64 {
         let f = i as f64;
-        let at = DVec3::new(0.3 * (f % 19.0), 0.4 + 0.2 * (f / 19.0).floor(), 0.05 * (f % 7.0));
+        let at = DVec3::new(
+            0.3 * (f % 19.0),
+            0.4 + 0.2 * (f / 19.0).floor(),
+            0.05 * (f % 7.0),
+        );
         let kind = if i < 300 {
-            Kind::Line(ConstructionLine::raw(at, at + DVec3::new(0.25, 0.01 * (f % 5.0), 0.1)))
+            Kind::Line(ConstructionLine::raw(
+                at,
+                at + DVec3::new(0.25, 0.01 * (f % 5.0), 0.1),
+            ))
         } else {
-            let points = (0..200).map(|k| at + 0.1 * DVec3::new((0.1 * f64::from(k)).cos(), 0.01 * f64::from(k), (0.1 * f64::from(k)).sin()));
+            let points = (0..200).map(|k| {
+                at + 0.1
+                    * DVec3::new(
+                        (0.1 * f64::from(k)).cos(),
+                        0.01 * f64::from(k),
+                        (0.1 * f64::from(k)).sin(),
+                    )
+            });
             Kind::Stroke(DrawnStroke::raw(points.collect(), 0.008).into())
         };
         let object = Object::new(format!("Drawn {i}"), kind).into();
         let id = ObjectId(s.document().next_id() + i);
         edits.push(Edit::Add { id, object });
     }
-    s.ask(Command::Edit(Edit::Composite { name: "Set up".into(), edits }));
+    s.ask(Command::Edit(Edit::Composite {
+        name: "Set up".into(),
+        edits,
+    }));
     s.settle();
     assert_eq!(s.document().len(), 380);
     let file = s.home.path().join("large.midair");
@@ -405,7 +482,10 @@ fn three_hundred_lines_and_eighty_strokes_keep_the_frame() {
     }
     s.let_go(R, Action::Act);
     times.sort_by(f64::total_cmp);
-    println!("a frame with 300 lines and 80 strokes while one draws: median {:.2} ms, 90 % {:.2} ms", times[30], times[54]);
+    println!(
+        "a frame with 300 lines and 80 strokes while one draws: median {:.2} ms, 90 % {:.2} ms",
+        times[30], times[54]
+    );
     assert_eq!(s.document().len(), 381);
     s.ask(Command::Undo);
     let drawn = s.document().clone();

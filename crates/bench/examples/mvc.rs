@@ -38,6 +38,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         out.push(json!({ "magnitudes": fitted.magnitudes, "ms": best, "steps": fitted.steps }));
     }
-    println!("{}", Value::from(out));
+    println!("{}", Value::Array(out));
     Ok(())
 }

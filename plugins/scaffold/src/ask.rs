@@ -9,7 +9,6 @@ use midair_document::{ConstructionLine, DrawnStroke, Edit, Kind, Object, ObjectI
 use midair_solid::plate;
 use midair_studio::command::Command;
 use midair_studio::drawing::Drawing;
-use midair_studio::hands::Side;
 use midair_studio::notice::Notices;
 use midair_studio::project::{Project, Selection};
 use midair_studio::settings::{ScaffoldSettings, Settings};
@@ -415,6 +414,3 @@ fn group(project: &mut Project, notices: &mut Notices) {
     let edit = document.group_edit("Scaffold", &lines);
     project.commit("Group scaffold", [edit], notices);
 }
-
-/// The side whose thresholds a panel speaks of.
-pub(crate) const PANEL_SIDE: Side = Side::Right;

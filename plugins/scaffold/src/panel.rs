@@ -1,7 +1,7 @@
 //! The panel: what the trigger draws, how it is corrected, what was made of it.
 
 use bevy::prelude::World;
-use midair_document::{ConstructionLine, affine};
+use midair_document::affine;
 use midair_studio::command::Command;
 use midair_studio::panel::egui::{self, DragValue, Slider, Ui};
 use midair_studio::panel::{Dock, Panel, PanelInfo, icon, kit};
@@ -134,12 +134,7 @@ impl ScaffoldPanel {
         if let Some(line) = first.line().filter(|_| objects.len() == 1) {
             ui.label(words(&line.kept));
             let there = affine(&first.placement);
-            self.line(
-                ui,
-                line,
-                line.ends().map(|p| there.transform_point3(p)),
-                asks,
-            );
+            self.line(ui, line.ends().map(|p| there.transform_point3(p)), asks);
         }
         if objects.len() == 2 && objects.iter().all(|o| o.line().is_some()) {
             self.number_ask(
@@ -210,13 +205,7 @@ impl ScaffoldPanel {
         );
     }
 
-    fn line(
-        &mut self,
-        ui: &mut Ui,
-        _line: &ConstructionLine,
-        [a, b]: [bevy::math::DVec3; 2],
-        asks: &mut Vec<Command>,
-    ) {
+    fn line(&mut self, ui: &mut Ui, [a, b]: [bevy::math::DVec3; 2], asks: &mut Vec<Command>) {
         let along = b - a;
         let rise = along.y.atan2(along.x.hypot(along.z)).to_degrees();
         let heading = (-along.z).atan2(along.x).to_degrees();

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec3, Vec3};
+use bevy::math::DVec3;
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use midair_document::{Document, Object, ObjectId, affine};
@@ -221,11 +221,6 @@ pub fn nearest_to_ray(eye: DVec3, direction: DVec3, a: DVec3, b: DVec3) -> Optio
     };
     let point = a + along * t.clamp(0.0, 1.0);
     ((point - eye).dot(direction) > 0.0).then_some(point)
-}
-
-/// As single precision has it.
-pub fn single(p: DVec3) -> Vec3 {
-    p.as_vec3()
 }
 
 pub(crate) fn plugin(app: &mut App) {

@@ -126,11 +126,13 @@ fn touch(
             consider(entity, nearest.point);
         }
         // A line is thinner than anything.
-        let drawn = drawing.nearest(tip.as_dvec3(), reach.into()).map(|on| Touched {
-            object: on.id,
-            point: on.point.as_vec3(),
-            distance: on.distance as f32,
-        });
+        let drawn = drawing
+            .nearest(tip.as_dvec3(), reach.into())
+            .map(|on| Touched {
+                object: on.id,
+                point: on.point.as_vec3(),
+                distance: on.distance as f32,
+            });
         drawn.or(best.map(|(_, touched)| touched))
     });
     touch.set_if_neq(Touch { hands: found });

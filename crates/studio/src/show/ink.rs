@@ -33,7 +33,7 @@ pub(super) fn draw(
     hands: Res<Hands>,
     mut drawn_at: Local<Option<i32>>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut objects: Query<(Entity, &ObjectEntity, Option<&mut Inked>)>,
+    objects: Query<(Entity, &ObjectEntity, Option<&Inked>)>,
     mut commands: Commands,
 ) {
     let zoom = zoom(&hands);
@@ -42,12 +42,12 @@ pub(super) fn draw(
     }
     *drawn_at = Some(zoom);
     let document = project.document();
-    for (entity, id, inked) in &mut objects {
+    for (entity, id, inked) in &objects {
         let Some(object) = document.object(id.0) else {
             continue;
         };
         let drawn = matches!(object.kind, Kind::Line(_) | Kind::Stroke(_));
-        let shown = inked.as_ref().and_then(|i| i.0.as_ref());
+        let shown = inked.and_then(|i| i.0.as_ref());
         if !drawn || shown.is_some_and(|(kind, at)| *at == zoom && same(kind, &object.kind)) {
             continue;
         }

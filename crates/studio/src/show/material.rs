@@ -89,7 +89,11 @@ impl Look {
         if let Some(ink) = self.ink.filter(|ink| !ink.stroke) {
             let alpha = if ink.dimmed { 0.22 } else { 0.9 };
             return StandardMaterial {
-                base_color: base.with_alpha(if self.touched || self.selected { 1.0 } else { alpha }),
+                base_color: base.with_alpha(if self.touched || self.selected {
+                    1.0
+                } else {
+                    alpha
+                }),
                 unlit: true,
                 alpha_mode: AlphaMode::Blend,
                 ..default()

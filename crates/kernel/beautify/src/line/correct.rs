@@ -120,7 +120,11 @@ fn meet(
     // What settled holds to rounding: among such the nearest to what was drawn comes first.
     let weigh = |c: &Constraint| {
         let energy = c.energy(settled, scale);
-        if energy < HELD { c.energy(drawn, scale) * HELD } else { energy }
+        if energy < HELD {
+            c.energy(drawn, scale) * HELD
+        } else {
+            energy
+        }
     };
     let mut order: Vec<(f64, &Constraint)> = found.iter().map(|c| (weigh(c), c)).collect();
     let holds_now = |c: &Constraint| c.energy(now, scale) < exact::HOLDS * exact::HOLDS;

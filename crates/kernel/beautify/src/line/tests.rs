@@ -280,9 +280,27 @@ fn most_noisy_hexagonal_prisms_come_out_exact() {
             part.iter()
                 .all(|l| (l.length() - part[0].length()).abs() < 1e-6)
         };
-        if !(closes && upright && regular && equal(&lines[..6]) && equal(&lines[12..]) && equal(&lines[6..12])) && std::env::var_os("SHOW").is_some() {
-            println!("side {side:.3} upright {upright} regular {regular} equal {} {} {} height {height:.4}", equal(&lines[..6]), equal(&lines[12..]), equal(&lines[6..12]));
-            for l in &lines { println!("  {:.4} {:.2}", l.length(), (l.b-l.a).z.atan2((l.b-l.a).x).to_degrees()); }
+        if !(closes
+            && upright
+            && regular
+            && equal(&lines[..6])
+            && equal(&lines[12..])
+            && equal(&lines[6..12]))
+            && std::env::var_os("SHOW").is_some()
+        {
+            println!(
+                "side {side:.3} upright {upright} regular {regular} equal {} {} {} height {height:.4}",
+                equal(&lines[..6]),
+                equal(&lines[12..]),
+                equal(&lines[6..12])
+            );
+            for l in &lines {
+                println!(
+                    "  {:.4} {:.2}",
+                    l.length(),
+                    (l.b - l.a).z.atan2((l.b - l.a).x).to_degrees()
+                );
+            }
         }
         exact += usize::from(
             closes

@@ -40,6 +40,12 @@ pub struct Fitted {
 /// Samples of the curvature per segment (§4.2.2 asks for one at least).
 const SAMPLES: usize = 10;
 const MOST_STEPS: usize = 60;
+/// Tangent magnitudes to begin with, as shares of the chords; the first is the paper's.
+const STARTS: [f64; 4] = [1.0 / 3.0, 0.55, 0.2, 0.9];
+/// Steps from each start, after which only the best …
+const FIRST_STEPS: usize = 6;
+/// … so many go on.
+const LAST: usize = 2;
 
 /// The curve through `curve`'s points of least Σ (cᵢ − cᵢ₊₁)² (Eq. 9), begun at a third of each
 /// chord as the paper does. A curve without segments is empty.
@@ -55,65 +61,106 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
         .windows(2)
         .map(|q| q[0].distance(q[1]).max(1e-9))
         .collect();
-    let mut x: Vec<f64> = chords.iter().flat_map(|c| [c / 3.0; 2]).collect();
-    let mut fitted = Fitted {
-        spline: Spline::default(),
-        magnitudes: Vec::new(),
-        variation: 0.0,
-        steps: 0,
-    };
     if curve.segments() == 0 {
-        return fitted;
+        return Fitted {
+            spline: Spline::default(),
+            magnitudes: Vec::new(),
+            variation: 0.0,
+            steps: 0,
+        };
     }
     let mut measure = Measure::new(curve, count.max(6));
-    let mut value = measure.value(&x);
-    let mut damping = 1e-3;
-    let mut trial = x.clone();
-    while fitted.steps < MOST_STEPS {
-        fitted.steps += 1;
-        let (residuals, jacobian) = measure.linearised(&x);
-        let matrix = jacobian.tr_mul(&jacobian);
-        let gradient = jacobian.tr_mul(&residuals);
-        let mut improved = false;
-        let mut gained = 0.0;
-        for _ in 0..12 {
-            let mut damped = matrix.clone();
-            for i in 0..x.len() {
-                damped[(i, i)] += damping * (matrix[(i, i)] + 1e-12);
-            }
-            let Some(step): Option<DVector<f64>> = damped.cholesky().map(|c| c.solve(&gradient))
-            else {
-                damping *= 10.0;
-                continue;
-            };
-            for i in 0..x.len() {
-                // A tangent never turns round and never outgrows its segment tenfold.
-                let chord = chords[i / 2];
-                trial[i] = (x[i] - step[i]).clamp(0.01 * chord, 10.0 * chord);
-            }
-            let next = measure.value(&trial);
-            if next < value {
-                gained = (value - next) / value.max(1e-300);
-                (value, improved) = (next, true);
-                x.copy_from_slice(&trial);
-                damping = (damping * 0.2).max(1e-12);
-                break;
-            }
-            damping *= 6.0;
-        }
-        if !improved || gained < 1e-6 {
-            break;
-        }
+    // Begun as the paper does and in other ways: the valleys are many, and the nearest is not the deepest.
+    let mut tries: Vec<Descent> = STARTS
+        .iter()
+        .map(|share| {
+            let x = chords.iter().flat_map(|c| [c * share; 2]).collect();
+            let mut descent = Descent::new(x, &mut measure);
+            descent.run(FIRST_STEPS, &chords, &mut measure);
+            descent
+        })
+        .collect();
+    tries.sort_by(|a, b| a.value.total_cmp(&b.value));
+    tries.truncate(LAST);
+    for descent in &mut tries {
+        descent.run(MOST_STEPS, &chords, &mut measure);
     }
+    tries.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let Descent {
+        mut x,
+        value,
+        steps,
+        ..
+    } = tries.swap_remove(0);
     for (i, x) in x.chunks_mut(2).enumerate() {
         if let Some(arc) = arc(curve, i).filter(|a| x.iter().all(|m| (m / a - 1.0).abs() < 0.02)) {
             x.fill(arc);
         }
     }
-    fitted.spline = super::spline(curve, &x);
-    fitted.magnitudes = x;
-    fitted.variation = value;
-    fitted
+    Fitted {
+        spline: super::spline(curve, &x),
+        magnitudes: x,
+        variation: value,
+        steps,
+    }
+}
+
+/// Levenberg–Marquardt from one start, to be gone on with.
+struct Descent {
+    x: Vec<f64>,
+    value: f64,
+    damping: f64,
+    steps: usize,
+    done: bool,
+}
+
+impl Descent {
+    fn new(x: Vec<f64>, measure: &mut Measure) -> Self {
+        Self {
+            value: measure.value(&x),
+            x,
+            damping: 1e-3,
+            steps: 0,
+            done: false,
+        }
+    }
+
+    fn run(&mut self, most: usize, chords: &[f64], measure: &mut Measure) {
+        let mut trial = self.x.clone();
+        while self.steps < most && !self.done {
+            self.steps += 1;
+            let (residuals, jacobian) = measure.linearised(&self.x);
+            let matrix = jacobian.tr_mul(&jacobian);
+            let gradient = jacobian.tr_mul(&residuals);
+            let mut gained = None;
+            for _ in 0..12 {
+                let mut damped = matrix.clone();
+                for i in 0..trial.len() {
+                    damped[(i, i)] += self.damping * (matrix[(i, i)] + 1e-12);
+                }
+                let step: Option<DVector<f64>> = damped.cholesky().map(|c| c.solve(&gradient));
+                let Some(step) = step else {
+                    self.damping *= 10.0;
+                    continue;
+                };
+                for i in 0..trial.len() {
+                    // A tangent never turns round and never outgrows its segment tenfold.
+                    let chord = chords[i / 2];
+                    trial[i] = (self.x[i] - step[i]).clamp(0.01 * chord, 10.0 * chord);
+                }
+                let next = measure.value(&trial);
+                if next < self.value {
+                    gained = Some((self.value - next) / self.value.max(1e-300));
+                    self.value = next;
+                    self.x.copy_from_slice(&trial);
+                    self.damping = (self.damping * 0.2).max(1e-12);
+                    break;
+                }
+                self.damping *= 6.0;
+            }
+            self.done = gained.is_none_or(|g| g < 1e-6);
+        }
+    }
 }
 
 /// The magnitude with which a segment is rounder than that of least variation, where its ends and

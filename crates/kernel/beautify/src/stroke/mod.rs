@@ -11,7 +11,7 @@ mod tests;
 use glam::DVec3;
 use midair_curve::{CubicBezier, Polyline, Spline};
 
-pub use fit::{Curve, Fitted, fit};
+pub use fit::{Curve, Fitted, fit, fit_with};
 pub use keypoints::Keypoint;
 
 use crate::line::Scaffold;

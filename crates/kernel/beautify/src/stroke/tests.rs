@@ -1,6 +1,5 @@
 use glam::DVec3;
 
-use super::fit::fit_with;
 use super::*;
 use crate::line::Line;
 
