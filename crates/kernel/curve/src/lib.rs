@@ -1,6 +1,9 @@
 //! Curves in space, in metres and double precision.
 //!
 //! - [`CubicBezier`] and [`Spline`]: one cubic segment, and a chain of them.
+//! - [`Hermite`]: the curve between two controllers, with [`Lengths`] that keep its speed even.
+//! - [`Frames`]: a frame along it that turns as little as it can and ends as the right one is held.
+//! - [`Pace`]: how evenly counted points are spread along it.
 //! - [`Polyline`]: points joined by straight lines, measured and resampled by arc length.
 //!
 //! What is *not* promised: a spline is as smooth as its control points make it; nothing here
@@ -16,7 +19,13 @@
 //! ```
 
 mod bezier;
+mod frames;
+mod hermite;
+mod pace;
 mod polyline;
 
 pub use bezier::{CubicBezier, Spline};
+pub use frames::{Frames, unwound};
+pub use hermite::{End, Hermite, Lengths};
+pub use pace::Pace;
 pub use polyline::Polyline;
