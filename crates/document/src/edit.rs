@@ -414,6 +414,8 @@ fn node_bytes(node: &Node) -> usize {
         }
         Node::Primitive(Primitive::Convex { points }) => 12 * points.len(),
         Node::Canvas(canvas) => canvas.strokes.iter().map(stroke_bytes).sum(),
+        Node::Sweep(sweep) => size_of_val(&sweep.ribs[..]),
+        Node::Clones { row, .. } => size_of_val(&row.ribs[..]),
         Node::Primitive(_) | Node::Mesh { .. } => 0,
     }
 }

@@ -2,7 +2,7 @@ use std::collections::{HashMap, HashSet};
 
 use midair_field::{
     Canvas, CanvasError, MAX_DEPTH, MAX_LEAVES, MAX_OPERANDS, Node, Op, Operand, Placement,
-    Primitive, PrimitiveError, Recipe, RecipeHash, Skeleton, Stroke,
+    Primitive, PrimitiveError, Recipe, RecipeHash, Row, Skeleton, Stroke, Sweep, SweepError,
 };
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
@@ -22,9 +22,9 @@ pub(crate) fn walk(
                 walk(&operand.recipe, seen, visit);
             }
         }
-        Node::Component { recipe, .. } => walk(recipe, seen, visit),
+        Node::Component { recipe, .. } | Node::Clones { recipe, .. } => walk(recipe, seen, visit),
         Node::Canvas(canvas) => canvas.recipes().for_each(|r| walk(r, seen, visit)),
-        Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } => {}
+        Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } | Node::Sweep(_) => {}
     }
     visit(recipe);
 }
@@ -38,6 +38,9 @@ pub enum RecipeFault {
     /// A painting with impossible numbers.
     #[error(transparent)]
     Canvas(#[from] CanvasError),
+    /// A sweep or a row of clones that cannot be.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// An operand that stands nowhere.
     #[error("operand {0} stands nowhere: its placement is not finite, or a scale is zero")]
     Placement(usize),
@@ -74,8 +77,13 @@ fn check_size(recipe: &Recipe) -> Result<(), RecipeFault> {
     if recipe.depth() > MAX_DEPTH {
         return Err(RecipeFault::Depth);
     }
-    if recipe.leaves() > MAX_LEAVES {
-        return Err(RecipeFault::Operands(recipe.leaves()));
+    // A row that stands by itself is drawn and never evaluated: only what is cloned counts.
+    let leaves = match recipe.node() {
+        Node::Clones { recipe, .. } => recipe.leaves(),
+        _ => recipe.leaves(),
+    };
+    if leaves > MAX_LEAVES {
+        return Err(RecipeFault::Operands(leaves));
     }
     Ok(())
 }
@@ -89,6 +97,12 @@ fn check_node(node: &Node) -> Result<(), RecipeFault> {
         }
         Node::Component { .. } => Ok(()),
         Node::Canvas(canvas) => Ok(canvas.validate()?),
+        Node::Sweep(sweep) => {
+            sweep.validate()?;
+            let closed = sweep.is_closed();
+            Ok(closed.then_some(()).ok_or(SweepError::Open)?)
+        }
+        Node::Clones { row, .. } => Ok(row.validate()?),
         Node::Solid(operands) if operands.len() > MAX_OPERANDS => {
             Err(RecipeFault::Operands(operands.len() as u64))
         }
@@ -135,6 +149,11 @@ enum StoredNode {
         canvas: Canvas,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         volumes: Vec<RecipeIndex>,
+    },
+    Sweep(Sweep),
+    Clones {
+        row: Row,
+        recipe: RecipeIndex,
     },
     Foreign {
         tool: String,
@@ -195,6 +214,11 @@ impl RecipeTable {
                     volumes,
                 }
             }
+            Node::Sweep(sweep) => StoredNode::Sweep(sweep.clone()),
+            Node::Clones { row, recipe } => StoredNode::Clones {
+                row: row.clone(),
+                recipe: self.enter(recipe),
+            },
             Node::Foreign {
                 tool,
                 data,
@@ -254,6 +278,11 @@ impl RecipeTable {
                     };
                     Node::Canvas(with_volumes(&canvas, &mut next)?)
                 }
+                StoredNode::Sweep(sweep) => Node::Sweep(sweep),
+                StoredNode::Clones { row, recipe } => Node::Clones {
+                    row,
+                    recipe: part(recipe)?,
+                },
                 StoredNode::Foreign {
                     tool,
                     data,

@@ -222,6 +222,15 @@ impl MeshSource for Volumes {
     fn volume(&self, mesh: &MeshHash, local_step: f32) -> Option<Arc<Volume>> {
         self.get(mesh, local_step, &Progress::new()).ok()
     }
+
+    fn baked(
+        &self,
+        name: &MeshHash,
+        local_step: f32,
+        make: &dyn Fn() -> TriMesh,
+    ) -> Option<Arc<Volume>> {
+        self.watched(&Progress::new()).baked(name, local_step, make)
+    }
 }
 
 /// [`Volumes`] whose bakes are watched and can be cancelled.
@@ -234,6 +243,19 @@ pub struct Watched<'a> {
 impl MeshSource for Watched<'_> {
     fn volume(&self, mesh: &MeshHash, local_step: f32) -> Option<Arc<Volume>> {
         self.volumes.get(mesh, local_step, self.progress).ok()
+    }
+
+    fn baked(
+        &self,
+        name: &MeshHash,
+        local_step: f32,
+        make: &dyn Fn() -> TriMesh,
+    ) -> Option<Arc<Volume>> {
+        let key = (*name, local_step.to_bits());
+        let made = self
+            .volumes
+            .once(key, self.progress, || Ok(Arc::new(make())));
+        made.ok()
     }
 }
 

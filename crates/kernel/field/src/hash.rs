@@ -3,6 +3,7 @@ use std::str::FromStr;
 
 use glam::{Vec2, Vec3};
 use midair_mesh::Aabb;
+use midair_swept::{Profile, Rib};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::{Canvas, Node, Op, Placement, Primitive, Skeleton};
@@ -153,6 +154,36 @@ impl Writer {
                 self.tag(6);
                 self.canvas(canvas);
             }
+            Node::Sweep(sweep) => {
+                self.tag(7);
+                self.count(sweep.count as usize);
+                self.tag(match sweep.profile {
+                    Profile::Sheet => 0,
+                    Profile::Tube => 1,
+                });
+                self.tag(u8::from(sweep.caps));
+                self.f32s(&[sweep.thickness]);
+                self.ribs(&sweep.ribs);
+            }
+            Node::Clones { row, recipe } => {
+                self.tag(8);
+                self.count(row.count as usize);
+                self.tag(u8::from(row.paced));
+                self.f32s(&[row.size]);
+                self.ribs(&row.ribs);
+                self.0.update(&recipe.hash().0);
+            }
+        }
+    }
+
+    fn ribs(&mut self, ribs: &[Rib]) {
+        self.count(ribs.len());
+        for rib in ribs {
+            rib.points.into_iter().for_each(|p| self.vec3(p));
+            rib.tangents.into_iter().for_each(|m| self.vec3(m));
+            self.f32s(&rib.slopes);
+            self.f32s(&rib.start.to_array());
+            self.f32s(&[rib.twist]);
         }
     }
 

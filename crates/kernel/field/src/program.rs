@@ -1,17 +1,18 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, DMat3, Mat3A, Vec3};
-use midair_mesh::{Aabb, MeshHash};
+use midair_mesh::{Aabb, MeshHash, TriMesh};
+use midair_swept::{Sweep, SweepError};
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
-use crate::bake::Volume;
+use crate::bake::{BakeOptions, Progress, Volume, bake};
 use crate::canvas::{Bench, Canvas, Painting};
 use crate::leaf::{Leaf, Source};
-use crate::recipe::{restricted, transformed};
+use crate::recipe::{placed, restricted, transformed};
 use crate::shape::Shape;
 use crate::stretch::stretched;
-use crate::{Node, Op, Placement, Primitive, PrimitiveError, Recipe, RecipeError};
+use crate::{Node, Op, Operand, Placement, Primitive, PrimitiveError, Recipe, RecipeError};
 
 /// The most primitives and meshes one program may have.
 pub const MAX_LEAVES: u64 = 65_536;
@@ -21,6 +22,19 @@ pub trait MeshSource: Sync {
     /// The mesh's baked distance, with nodes no further apart than `local_step` metres in the
     /// mesh's own frame; `None` where the mesh is not known.
     fn volume(&self, mesh: &MeshHash, local_step: f32) -> Option<Arc<Volume>>;
+
+    /// The same for a mesh that follows from a recipe, under the recipe's name: `make` is called
+    /// where it is not kept. `None` where it cannot be baked, or the work was given up.
+    fn baked(
+        &self,
+        name: &MeshHash,
+        local_step: f32,
+        make: &dyn Fn() -> TriMesh,
+    ) -> Option<Arc<Volume>> {
+        let _ = name;
+        let options = BakeOptions::with_step(local_step);
+        bake(&make(), &options, &Progress::new()).ok().map(Arc::new)
+    }
 }
 
 /// A source without meshes, for recipes of primitives alone.
@@ -55,6 +69,12 @@ pub enum CompileError {
     /// A mesh that nobody has.
     #[error("mesh {0} is missing; import it again or delete what uses it")]
     MissingMesh(MeshHash),
+    /// A sweep that encloses nothing.
+    #[error("a sweep in it is no solid: {0}")]
+    Sweep(#[from] SweepError),
+    /// A sweep too large for its step.
+    #[error("a sweep in it is too large for its step; choose a larger step")]
+    TooLarge,
     /// More leaves than can be evaluated.
     #[error("the solid has {0} parts; at most {MAX_LEAVES} are possible")]
     TooManyLeaves(u64),
@@ -209,46 +229,65 @@ impl Compiler<'_> {
             }
             Node::Component { recipe, .. } => self.emit(recipe, to_world),
             Node::Canvas(canvas) => self.canvas(recipe, canvas, to_world),
-            Node::Solid(operands) => {
-                let mut parts: Vec<(Op, Outline)> = Vec::with_capacity(operands.len());
-                for (i, operand) in operands.iter().filter(|o| !o.muted).enumerate() {
-                    let op = if i == 0 { Op::Union } else { operand.op };
-                    let start = self.tape.len();
-                    let part = self.emit(&operand.recipe, to_world * operand.placement.affine())?;
-                    match (part, op) {
-                        (Some(part), Op::Union) => {
-                            if !parts.is_empty() {
-                                self.tape.push(Instr::Min);
-                            }
-                            parts.push((op, part));
-                        }
-                        (Some(part), _) if !parts.is_empty() => {
-                            let intersect = op == Op::Intersect;
-                            self.tape.push(if intersect {
-                                Instr::Max
-                            } else {
-                                Instr::MaxNegated
-                            });
-                            parts.push((op, part));
-                        }
-                        // Taken from nothing.
-                        (Some(_), _) => self.tape.truncate(start),
-                        // Cut with nothing: nothing of what stands so far is left.
-                        (None, Op::Intersect) => {
-                            let nothing = start - tail(&self.tape[..start], parts.len());
-                            self.tape.truncate(nothing);
-                            parts.clear();
-                        }
-                        (None, _) => {}
+            Node::Sweep(sweep) => self.sweep(recipe, sweep, to_world).map(Some),
+            Node::Clones { row, recipe } => {
+                let places = row.places();
+                let operands = places.iter().map(|place| Operand {
+                    op: Op::Union,
+                    placement: placed(place),
+                    recipe: recipe.clone(),
+                    muted: false,
+                });
+                let operands: Vec<Operand> = operands.collect();
+                self.sequence(&operands, to_world)
+            }
+            Node::Solid(operands) => self.sequence(operands, to_world),
+        }
+    }
+
+    /// Operands read left to right.
+    fn sequence(
+        &mut self,
+        operands: &[Operand],
+        to_world: Affine3A,
+    ) -> Result<Option<Outline>, CompileError> {
+        let mut parts: Vec<(Op, Outline)> = Vec::with_capacity(operands.len());
+        for (i, operand) in operands.iter().filter(|o| !o.muted).enumerate() {
+            let op = if i == 0 { Op::Union } else { operand.op };
+            let start = self.tape.len();
+            let part = self.emit(&operand.recipe, to_world * operand.placement.affine())?;
+            match (part, op) {
+                (Some(part), Op::Union) => {
+                    if !parts.is_empty() {
+                        self.tape.push(Instr::Min);
                     }
+                    parts.push((op, part));
                 }
-                Ok((!parts.is_empty()).then(|| Outline {
-                    key: key_of(&parts),
-                    bounds: restricted(parts.iter().map(|(op, o)| (*op, o.bounds))),
-                    parts,
-                }))
+                (Some(part), _) if !parts.is_empty() => {
+                    let intersect = op == Op::Intersect;
+                    self.tape.push(if intersect {
+                        Instr::Max
+                    } else {
+                        Instr::MaxNegated
+                    });
+                    parts.push((op, part));
+                }
+                // Taken from nothing.
+                (Some(_), _) => self.tape.truncate(start),
+                // Cut with nothing: nothing of what stands so far is left.
+                (None, Op::Intersect) => {
+                    let nothing = start - tail(&self.tape[..start], parts.len());
+                    self.tape.truncate(nothing);
+                    parts.clear();
+                }
+                (None, _) => {}
             }
         }
+        Ok((!parts.is_empty()).then(|| Outline {
+            key: key_of(&parts),
+            bounds: restricted(parts.iter().map(|(op, o)| (*op, o.bounds))),
+            parts,
+        }))
     }
 
     fn canvas(
@@ -325,6 +364,33 @@ impl Compiler<'_> {
         let volume = volume.ok_or(CompileError::MissingMesh(*mesh))?;
         let bounds = transformed(&volume.bounds(), &to_world);
         // The volume found may be coarser than the one found later.
+        let name = (recipe.hash().0, Vec3::splat(volume.step()));
+        self.leaf(Source::Volume(volume), to_world, bounds, name)
+    }
+
+    fn sweep(
+        &mut self,
+        recipe: &Recipe,
+        sweep: &Sweep,
+        to_world: Affine3A,
+    ) -> Result<Outline, CompileError> {
+        let (_, largest) = singular(&to_world.matrix3);
+        // A wall has nodes within it, however coarse the rest is.
+        let thin = if sweep.thickness > 0.0 {
+            0.4 * sweep.thickness * largest
+        } else {
+            f32::MAX
+        };
+        let wanted = local_step(self.step.min(thin), largest);
+        let mesh = std::cell::OnceCell::new();
+        let make = || mesh.get_or_init(|| sweep.solid()).clone();
+        let name = MeshHash(recipe.hash().0);
+        let bake = || make().map(|s| s.mesh).unwrap_or_default();
+        let volume = match self.meshes.baked(&name, wanted, &bake) {
+            Some(volume) => volume,
+            None => return Err(make().err().map_or(CompileError::TooLarge, Into::into)),
+        };
+        let bounds = transformed(&volume.bounds(), &to_world);
         let name = (recipe.hash().0, Vec3::splat(volume.step()));
         self.leaf(Source::Volume(volume), to_world, bounds, name)
     }

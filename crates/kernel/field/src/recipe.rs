@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use midair_mesh::{Aabb, MeshHash};
+use midair_swept::{Row, Sweep, SweepError};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
@@ -62,6 +63,16 @@ pub enum Node {
     },
     /// Strokes that melt into one surface.
     Canvas(Canvas),
+    /// A curve dragged through space, closed by a thickness or by caps; evaluated as a mesh that is
+    /// baked.
+    Sweep(Sweep),
+    /// The same solid many times over, united: one operand.
+    Clones {
+        /// Where they stand.
+        row: Row,
+        /// What stands there.
+        recipe: Recipe,
+    },
     /// Made by a plugin that may be missing: evaluated through its baked mesh, its data untouched.
     Foreign {
         /// The tool that made it.
@@ -90,6 +101,9 @@ pub enum RecipeError {
     /// A painting with impossible numbers.
     #[error(transparent)]
     Canvas(#[from] CanvasError),
+    /// A sweep or a row of clones that cannot be.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// An operand that stands nowhere.
     #[error(
         "operand {0} has a placement that is not finite, not a unit rotation, or scaled by zero"
@@ -135,7 +149,11 @@ impl Recipe {
                 let each = canvas.recipes().map(Recipe::leaves);
                 leaves = each.fold(1, u64::saturating_add);
             }
-            Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } => {}
+            Node::Clones { row, recipe } => {
+                depth = recipe.depth();
+                leaves = recipe.leaves().saturating_mul(row.len() as u64);
+            }
+            Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } | Node::Sweep(_) => {}
         }
         Self(Arc::new(Inner {
             hash: RecipeHash::of(&node),
@@ -214,7 +232,9 @@ impl Recipe {
                 f(recipe.node())?;
                 match recipe.node() {
                     Node::Solid(operands) => rest.extend(operands.iter().map(|o| &o.recipe)),
-                    Node::Component { recipe, .. } => rest.push(recipe),
+                    Node::Component { recipe, .. } | Node::Clones { recipe, .. } => {
+                        rest.push(recipe);
+                    }
                     Node::Canvas(canvas) => rest.extend(canvas.recipes()),
                     _ => {}
                 }
@@ -240,7 +260,28 @@ fn check(node: &Node) -> Result<(), RecipeError> {
             None => Ok(()),
         },
         Node::Canvas(canvas) => Ok(canvas.validate()?),
+        Node::Sweep(sweep) => Ok(closed(sweep)?),
+        Node::Clones { row, .. } => Ok(row.validate()?),
         Node::Component { .. } => Ok(()),
+    }
+}
+
+/// A sweep that is a solid.
+///
+/// # Errors
+/// What [`Sweep::validate`] reports, or that it is open.
+pub(crate) fn closed(sweep: &Sweep) -> Result<(), SweepError> {
+    sweep.validate()?;
+    let closed = sweep.is_closed();
+    closed.then_some(()).ok_or(SweepError::Open)
+}
+
+/// Where a clone stands.
+pub(crate) fn placed(place: &midair_swept::Place) -> Placement {
+    Placement {
+        translation: place.translation,
+        rotation: place.rotation,
+        scale: Vec3::splat(place.scale),
     }
 }
 
@@ -250,6 +291,13 @@ fn bounds_of(node: &Node) -> Aabb {
         Node::Mesh { bounds, .. } | Node::Foreign { bounds, .. } => *bounds,
         Node::Component { recipe, .. } => recipe.bounds(),
         Node::Canvas(canvas) => canvas.bounds(),
+        Node::Sweep(sweep) => sweep.bounds(),
+        Node::Clones { row, recipe } => {
+            let own = recipe.bounds();
+            let each = row.places();
+            let each = each.iter().map(|p| transformed(&own, &placed(p).affine()));
+            each.fold(Aabb::EMPTY, |all, b| all.union(&b))
+        }
         Node::Solid(operands) => {
             let placed = operands
                 .iter()
