@@ -32,6 +32,7 @@ use midair_studio::{
     settings::KeepSettingsPlugin,
     show::RoomPlugin,
 };
+use midair_sweep::SweepPlugin;
 
 pub use again::{Again, ResumePlugin, SwitchPlugin, start_again};
 pub use rehearse::RehearsalPlugin;
@@ -44,7 +45,7 @@ impl Plugin for MidairPlugins {
     fn build(&self, app: &mut App) {
         // A user's bad input never ends the app: what a system reports is logged.
         app.insert_resource(FallbackErrorHandler(warn))
-            .add_plugins((StudioPlugin, AssemblePlugin, ScaffoldPlugin));
+            .add_plugins((StudioPlugin, AssemblePlugin, ScaffoldPlugin, SweepPlugin));
     }
 }
 
@@ -113,7 +114,7 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
         // The app's own lines are what a person should see.
         filter: format!(
-            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_scaffold=warn,midair_library=warn,midair_space=warn{}",
+            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_scaffold=warn,midair_sweep=warn,midair_library=warn,midair_space=warn{}",
             // Without a window the command itself says what was noticed, once.
             if stage.is_live() { ",midair_openxr=info" } else { ",midair_studio::notice=off" }
         ),

@@ -10,7 +10,7 @@ use midair_document::{Kind, Object, affine};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{TriMesh, check};
 use midair_playback::{FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport};
-use midair_solid::Solid;
+use midair_solid::surface_of;
 use midair_studio::evaluate::Evaluations;
 use midair_studio::project::Project;
 
@@ -33,6 +33,7 @@ pub fn probe(world: &mut World) -> Report {
                     Kind::Reference(_) => "reference".to_owned(),
                     Kind::Line(_) => "line".to_owned(),
                     Kind::Stroke(_) => "stroke".to_owned(),
+                    Kind::Sheet(_) => "sheet".to_owned(),
                 },
                 name: object.name.clone(),
                 transform: Mat4::from(object.placement.affine()).to_cols_array(),
@@ -98,9 +99,8 @@ fn mesh_of(
         ..object.placement
     };
     match &object.kind {
-        Kind::Solid(recipe) => {
-            let solid = Solid::make(recipe, &about, step, volumes, &AtomicBool::new(false));
-            solid.ok().map(|s| s.mesh())
+        Kind::Solid(recipe) | Kind::Sheet(recipe) => {
+            surface_of(recipe, &about, step, volumes, &AtomicBool::new(false)).ok()
         }
         Kind::Foreign { mesh, .. } => project.mesh(mesh).map(|m| m.transformed(&about.affine())),
         Kind::Reference(_) => None,

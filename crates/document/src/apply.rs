@@ -4,7 +4,7 @@ use std::sync::Arc;
 use midair_field::Op;
 
 use crate::drawing::DrawingFault;
-use crate::recipes::{RecipeFault, check_recipe, is_box};
+use crate::recipes::{RecipeFault, check_recipe, check_sheet, is_box};
 use crate::{Document, Edit, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
 
 /// Why an edit was refused. The document is as it was.
@@ -398,5 +398,6 @@ fn kind_fits(kind: &Kind) -> Result<(), EditError> {
         Kind::Reference(_) => Ok(()),
         Kind::Line(line) => Ok(line.check()?),
         Kind::Stroke(stroke) => Ok(stroke.check()?),
+        Kind::Sheet(recipe) => Ok(check_sheet(recipe)?),
     }
 }

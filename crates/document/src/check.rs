@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use crate::recipes::{check_recipe, is_box};
+use crate::recipes::{check_recipe, check_sheet, is_box};
 use crate::{Document, GroupId, Kind, LayerId, MeshStore, ObjectId};
 
 impl Document {
@@ -83,6 +83,11 @@ impl Document {
                 Kind::Stroke(stroke) => {
                     if let Err(e) = stroke.check() {
                         fault(format!("{who} is no stroke: {e}"));
+                    }
+                }
+                Kind::Sheet(recipe) => {
+                    if let Err(e) = check_sheet(recipe) {
+                        fault(format!("{who} is no surface: {e}"));
                     }
                 }
             }

@@ -246,7 +246,7 @@ pub(crate) fn meshes_of(
         Kind::Foreign { mesh, .. } => {
             meshes.insert(*mesh);
         }
-        Kind::Solid(recipe) => walk(recipe, seen, &mut |r: &Recipe| {
+        Kind::Solid(recipe) | Kind::Sheet(recipe) => walk(recipe, seen, &mut |r: &Recipe| {
             if let Node::Mesh { mesh, .. } | Node::Foreign { mesh, .. } = r.node() {
                 meshes.insert(*mesh);
             }

@@ -392,7 +392,7 @@ fn kind_bytes(kind: &Kind, seen: &mut HashSet<midair_field::RecipeHash>) -> usiz
         Kind::Reference(_) => 0,
         Kind::Line(line) => line.bytes(),
         Kind::Stroke(stroke) => stroke.bytes(),
-        Kind::Solid(recipe) => {
+        Kind::Solid(recipe) | Kind::Sheet(recipe) => {
             let mut bytes = 0;
             walk(recipe, seen, &mut |r| bytes += node_bytes(r.node()));
             bytes

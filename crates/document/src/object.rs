@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use midair_field::{Node, Placement, Recipe};
+use midair_field::{Node, Placement, Recipe, Sweep};
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
 
@@ -109,6 +109,27 @@ impl Object {
         }
     }
 
+    /// The open sweep that it is.
+    pub fn sheet(&self) -> Option<&Sweep> {
+        self.sweep().filter(|_| matches!(self.kind, Kind::Sheet(_)))
+    }
+
+    /// The sweep that it is, open or closed.
+    pub fn sweep(&self) -> Option<&Sweep> {
+        match self.shown()?.node() {
+            Node::Sweep(sweep) => Some(sweep),
+            _ => None,
+        }
+    }
+
+    /// What is drawn of it: a solid's recipe, or that of an open sweep.
+    pub fn shown(&self) -> Option<&Recipe> {
+        match &self.kind {
+            Kind::Solid(recipe) | Kind::Sheet(recipe) => Some(recipe),
+            _ => None,
+        }
+    }
+
     /// The construction line that it is.
     pub fn line(&self) -> Option<&ConstructionLine> {
         match &self.kind {
@@ -156,7 +177,7 @@ impl Object {
     /// The object's box in its own frame, before its scale: metres.
     pub fn bounds(&self) -> Aabb {
         match &self.kind {
-            Kind::Solid(recipe) => recipe.bounds(),
+            Kind::Solid(recipe) | Kind::Sheet(recipe) => recipe.bounds(),
             Kind::Foreign { bounds, .. } => *bounds,
             Kind::Reference(reference) => reference.bounds(),
             Kind::Line(line) => around(line.ends(), 0.0),
@@ -188,6 +209,9 @@ pub enum Kind<R = Recipe> {
     Line(ConstructionLine),
     /// A shape stroke: a curve, drawn as a tube.
     Stroke(Arc<DrawnStroke>),
+    /// A sweep that is open, a surface without inside: a recipe of one [`Node::Sweep`], which is no
+    /// operand until it is closed.
+    Sheet(R),
 }
 
 /// A picture that stands in the room to work from. It lies in the x and y of its own frame, its
@@ -257,6 +281,7 @@ impl<R> Kind<R> {
             Self::Reference(reference) => Kind::Reference(*reference),
             Self::Line(line) => Kind::Line(line.clone()),
             Self::Stroke(stroke) => Kind::Stroke(stroke.clone()),
+            Self::Sheet(recipe) => Kind::Sheet(f(recipe)?),
         })
     }
 }

@@ -44,6 +44,9 @@ pub enum RecipeFault {
     /// An operand that stands nowhere.
     #[error("operand {0} stands nowhere: its placement is not finite, or a scale is zero")]
     Placement(usize),
+    /// A surface that is no sweep.
+    #[error("a surface without inside must be a sweep")]
+    NoSweep,
     /// A mesh whose box is not finite.
     #[error("a mesh has a box that is not finite")]
     Bounds,
@@ -71,6 +74,17 @@ pub(crate) fn check_recipe(
         }
     });
     found
+}
+
+/// Whether a recipe is one sweep with sound numbers, open or not.
+///
+/// # Errors
+/// The first fault found.
+pub(crate) fn check_sheet(recipe: &Recipe) -> Result<(), RecipeFault> {
+    match recipe.node() {
+        Node::Sweep(sweep) => Ok(sweep.validate()?),
+        _ => Err(RecipeFault::NoSweep),
+    }
 }
 
 fn check_size(recipe: &Recipe) -> Result<(), RecipeFault> {

@@ -7,7 +7,7 @@ use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
 use midair_document::{
-    Document, Edit, History, MeshStore, Object, ObjectId, OpenError, open, save,
+    Document, Edit, History, Kind, MeshStore, Object, ObjectId, OpenError, open, save,
 };
 use midair_field::{Op, Placement};
 use support::{ball, foreign, fuse, mesh_recipe};
@@ -291,4 +291,43 @@ fn a_file_that_cannot_be_written_keeps_the_old_one() {
     let error = save(&nowhere, &empty.0, &empty.1).unwrap_err().to_string();
     assert!(error.contains("there is no such file or folder"), "{error}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn sweeps_sheets_and_rows_of_clones_come_back_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut history = History::new(Document::new(), MeshStore::new());
+    let (sheet, plate, row) = support::swept();
+    let before = history.bytes();
+    let id = history
+        .add(Object::new("Sheet", Kind::Sheet(sheet.clone())))
+        .unwrap();
+    history.add(Object::solid("Plate", plate.clone())).unwrap();
+    history.add(Object::solid("Row", row)).unwrap();
+    let held = history.bytes() - before;
+    history
+        .apply(Edit::SetKind {
+            id,
+            kind: Kind::Solid(plate.clone()),
+        })
+        .unwrap();
+    history.undo();
+    assert!(held > 0 && history.document().check().is_empty());
+    let path = folder.path().join("swept.midair");
+    save(&path, history.document(), history.meshes()).unwrap();
+    let opened = open(&path).unwrap();
+    assert!(opened.warnings.is_empty(), "{:?}", opened.warnings);
+    assert_eq!(&opened.document, history.document());
+    let object = opened.document.object(id).unwrap();
+    assert!(object.sheet().is_some() && object.recipe().is_none() && object.operand().is_none());
+    // A surface is no solid, and a solid that is no sweep no surface.
+    let open_solid = history.apply(Edit::set_recipe(id, sheet));
+    assert!(
+        open_solid
+            .unwrap_err()
+            .to_string()
+            .contains("give it a thickness")
+    );
+    let kind = Kind::Sheet(ball(0.1));
+    assert!(history.apply(Edit::SetKind { id, kind }).is_err());
 }

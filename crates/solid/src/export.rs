@@ -7,7 +7,7 @@ use midair_mesh::{
     Curve, Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write_drawing,
 };
 
-use crate::{Solid, SolidError, finish, tube};
+use crate::{SolidError, finish, surface_of, tube};
 
 /// Flat sides around a stroke that is written as a tube.
 const SIDES: usize = 12;
@@ -160,21 +160,20 @@ fn object_mesh(
     cancel: &AtomicBool,
 ) -> Result<Option<TriMesh>, ExportError> {
     match &object.kind {
-        Kind::Solid(recipe) => {
+        Kind::Solid(recipe) | Kind::Sheet(recipe) => {
             // Evaluated about the object's own origin and moved afterwards: far from the world's
             // origin single precision would fray the triangles.
             let about = Placement {
                 translation: glam::Vec3::ZERO,
                 ..object.placement
             };
-            let solid = Solid::make(recipe, &about, step, volumes, cancel);
-            let mut mesh = solid
-                .map_err(|reason| ExportError::Solid {
+            let mut mesh = surface_of(recipe, &about, step, volumes, cancel).map_err(|reason| {
+                ExportError::Solid {
                     file: file.into(),
                     object: object.name.clone(),
                     reason,
-                })?
-                .mesh();
+                }
+            })?;
             for p in &mut mesh.positions {
                 *p += object.placement.translation;
             }

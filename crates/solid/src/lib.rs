@@ -29,12 +29,14 @@ use midair_surface::{Cancelled, Surface};
 mod export;
 mod material;
 mod plate;
+mod swept;
 mod thumbnail;
 mod tube;
 
 pub use export::{ExportError, ExportOptions, export, may_export};
 pub use material::{INK, MATERIALS, MaterialInfo, PLAIN, finish};
 pub use plate::{PlateFault, plate};
+pub use swept::{Clones, clones, own_mesh, surface_of};
 pub use thumbnail::Thumbnail;
 pub use tube::tube;
 

@@ -6,7 +6,7 @@ use glam::{Mat3, Vec2, Vec3};
 use midair_field::{MeshSource, Placement, Recipe};
 use midair_mesh::TriMesh;
 
-use crate::{Solid, SolidError};
+use crate::{SolidError, surface_of};
 
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 3;
@@ -43,8 +43,8 @@ impl Thumbnail {
         };
         // Finer than its pixels.
         let step = (extent / 72.0).clamp(1e-4, 1.0);
-        let solid = Solid::make(recipe, &Placement::IDENTITY, step, meshes, cancel)?;
-        Ok(Self::of_mesh(&solid.mesh(), size))
+        let mesh = surface_of(recipe, &Placement::IDENTITY, step, meshes, cancel)?;
+        Ok(Self::of_mesh(&mesh, size))
     }
 
     /// The same of a mesh. One without triangles gives an empty picture.

@@ -225,3 +225,38 @@ fn fuse_pending(document: &Document, next: u64) -> Edit {
         edits,
     }
 }
+
+/// An open sheet, the plate it is with a thickness, and a row of balls along its first curve.
+pub fn swept() -> (Recipe, Recipe, Recipe) {
+    use midair_field::{Node, Profile, Rib, Row, Sweep};
+    let rib = |z: f32| Rib {
+        points: [[-0.1, 0.0, z].into(), [0.1, 0.0, z].into()],
+        tangents: [[0.1, 0.2, 0.0].into(), [0.1, -0.2, 0.0].into()],
+        slopes: [0.5, 1.0],
+        start: Default::default(),
+        twist: 12.5,
+    };
+    let sheet = Sweep {
+        ribs: (0..5).map(|i| rib(0.02 * i as f32)).collect(),
+        count: 12,
+        profile: Profile::Sheet,
+        thickness: 0.0,
+        caps: false,
+    };
+    let plate = Sweep {
+        thickness: 0.01,
+        ..sheet.clone()
+    };
+    let row = Row {
+        ribs: sheet.ribs[..1].into(),
+        count: 5,
+        size: 1.0,
+        paced: true,
+    };
+    let recipe = ball(0.02);
+    (
+        Recipe::new(Node::Sweep(sheet)),
+        Recipe::new(Node::Sweep(plate)),
+        Recipe::new(Node::Clones { row, recipe }),
+    )
+}

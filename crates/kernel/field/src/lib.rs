@@ -27,7 +27,7 @@ pub use dirty::{changed_box, refuse};
 pub use fuse::{FuseError, FuseOptions, fuse};
 pub use grid::{BRICK, Brick, BrickCoord, Grid};
 pub use hash::RecipeHash;
-pub use midair_swept::{Profile, Rib, Row, Surface, Sweep, SweepError};
+pub use midair_swept::{Place, Profile, Rib, Row, Surface, Sweep, SweepError};
 pub use placement::Placement;
 pub use primitive::{MAX_CONTOUR_POINTS, MAX_HULL_POINTS, MAX_LENGTH, Primitive, PrimitiveError};
 pub use program::{CompileError, MAX_LEAVES, MeshSource, Program, local_step};

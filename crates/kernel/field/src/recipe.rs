@@ -260,20 +260,11 @@ fn check(node: &Node) -> Result<(), RecipeError> {
             None => Ok(()),
         },
         Node::Canvas(canvas) => Ok(canvas.validate()?),
-        Node::Sweep(sweep) => Ok(closed(sweep)?),
+        // Open ones are recipes too, and are refused where a solid is made of them.
+        Node::Sweep(sweep) => Ok(sweep.validate()?),
         Node::Clones { row, .. } => Ok(row.validate()?),
         Node::Component { .. } => Ok(()),
     }
-}
-
-/// A sweep that is a solid.
-///
-/// # Errors
-/// What [`Sweep::validate`] reports, or that it is open.
-pub(crate) fn closed(sweep: &Sweep) -> Result<(), SweepError> {
-    sweep.validate()?;
-    let closed = sweep.is_closed();
-    closed.then_some(()).ok_or(SweepError::Open)
 }
 
 /// Where a clone stands.

@@ -3,21 +3,25 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
-use bevy_rapier3d::rapier::prelude::{SharedShape, TriMesh as Trimesh, TriMeshFlags};
+use bevy_rapier3d::rapier::prelude::{Pose, SharedShape, TriMesh as Trimesh, TriMeshFlags};
 use midair_field::Placement;
 use midair_field::Recipe;
 use midair_field::bake::Progress;
+use midair_field::{Node, Place, Sweep};
 use midair_library::Volumes;
 use midair_mesh::TriMesh;
-use midair_solid::{Solid, SolidError};
+use midair_solid::{Clones, Solid, SolidError, clones, own_mesh};
 
 use super::{Key, Update};
 use crate::show::to_bevy_mesh;
 
 /// A solid, made.
 pub struct Made {
-    /// The whole surface, closed and welded, in the recipe's own frame.
+    /// The whole surface, closed and welded, in the recipe's own frame. Of a row of clones, that of
+    /// one of them; of an open sweep, the surface that it is.
     pub mesh: Arc<TriMesh>,
+    /// Where the clones of a row stand.
+    pub places: Option<Arc<[Place]>>,
     /// The same, ready to be drawn; taken by the first that draws it.
     pub(crate) drawn: std::sync::Mutex<Option<Mesh>>,
     /// The same, ready to be picked; `None` where the solid is empty.
@@ -44,9 +48,41 @@ impl Made {
         }
     }
 
+    /// A row of clones.
+    fn from_clones(clones: Clones) -> Self {
+        let one = Self::from_mesh(clones.mesh);
+        let volume = clones.places.iter().map(|p| f64::from(p.scale).powi(3));
+        Self {
+            volume: one.volume * volume.sum::<f64>(),
+            shape: boxes(&one.mesh, &clones.places),
+            bytes: one.bytes + clones.places.len() * 192,
+            places: Some(clones.places.into()),
+            ..one
+        }
+    }
+
+    /// An open sweep, with its places on a picture.
+    fn from_sheet(sweep: &Sweep) -> Option<Self> {
+        let surface = sweep.surface().ok()?;
+        let made = Self::from(Arc::new(surface.mesh), TriMeshFlags::empty());
+        if let Ok(mut drawn) = made.drawn.lock() {
+            let with = |m: Mesh| m.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, surface.uv);
+            *drawn = drawn.take().map(with);
+        }
+        Some(Self {
+            volume: 0.0,
+            ..made
+        })
+    }
+
     /// From a mesh that needs no evaluation.
     pub fn from_mesh(mesh: Arc<TriMesh>) -> Self {
-        let shape = shape(&mesh);
+        // Oriented, so that a hand inside the solid touches it.
+        Self::from(mesh, TriMeshFlags::ORIENTED)
+    }
+
+    fn from(mesh: Arc<TriMesh>, flags: TriMeshFlags) -> Self {
+        let shape = shape(&mesh, flags);
         let drawn = to_bevy_mesh(&mesh);
         // Positions, normals and indices, held as a mesh, a drawing and a collider with its tree.
         let bytes = mesh.positions.len() * 24 * 3 + mesh.triangles.len() * (12 * 3 + 64);
@@ -58,6 +94,7 @@ impl Made {
             extract_ms: 0.0,
             warnings: Vec::new(),
             bytes,
+            places: None,
             mesh,
         }
     }
@@ -103,15 +140,28 @@ impl Running {
         move || {
             // A mesh that is baked on the way shows its progress and stops when asked to.
             let meshes = volumes.watched(&progress);
-            let make = || Solid::make(&recipe, &Placement::IDENTITY, step, &meshes, &cancelled);
+            let make = || {
+                if let Some(row) = clones(&recipe, step, &meshes, &cancelled)? {
+                    return Ok(Made::from_clones(row));
+                }
+                if let Node::Sweep(sweep) = recipe.node()
+                    && !sweep.is_closed()
+                    && let Some(sheet) = Made::from_sheet(sweep)
+                {
+                    return Ok(sheet);
+                }
+                if let Some(mesh) = own_mesh(&recipe) {
+                    return Ok(Made::from_mesh(Arc::new(mesh)));
+                }
+                let solid = Solid::make(&recipe, &Placement::IDENTITY, step, &meshes, &cancelled)?;
+                let mut made = Made::from_mesh(Arc::new(solid.mesh()));
+                made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
+                made.extract_ms = solid.extract.as_secs_f64() * 1e3;
+                Ok(made)
+            };
             // Whoever waits for this is told, whatever happens in here.
             let made = match catch_unwind(AssertUnwindSafe(make)) {
-                Ok(Ok(solid)) => {
-                    let mut made = Made::from_mesh(Arc::new(solid.mesh()));
-                    made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
-                    made.extract_ms = solid.extract.as_secs_f64() * 1e3;
-                    Some(Ok(Arc::new(made)))
-                }
+                Ok(Ok(made)) => Some(Ok(Arc::new(made))),
                 Ok(Err(SolidError::Cancelled)) => None,
                 Ok(Err(_)) if progress.is_cancelled() => None,
                 Ok(Err(error)) => Some(Err(error.to_string())),
@@ -126,15 +176,26 @@ impl Running {
     }
 }
 
-fn shape(mesh: &TriMesh) -> Option<SharedShape> {
+/// A box around each clone: enough to point at one.
+fn boxes(mesh: &TriMesh, places: &[Place]) -> Option<SharedShape> {
+    let bounds = mesh.bounds();
+    if bounds.is_empty() || places.is_empty() {
+        return None;
+    }
+    let half = 0.5 * bounds.size();
+    let each = places.iter().map(|p| {
+        let at = p.translation + p.rotation * (bounds.centre() * p.scale);
+        let size = (half * p.scale).max(Vec3::splat(1e-5));
+        let shape = SharedShape::cuboid(size.x, size.y, size.z);
+        (Pose::from_parts(at, p.rotation), shape)
+    });
+    Some(SharedShape::compound(each.collect()))
+}
+
+fn shape(mesh: &TriMesh, flags: TriMeshFlags) -> Option<SharedShape> {
     if mesh.triangles.is_empty() {
         return None;
     }
-    // Oriented, so that a hand inside the solid touches it.
-    let trimesh = Trimesh::with_flags(
-        mesh.positions.clone(),
-        mesh.triangles.clone(),
-        TriMeshFlags::ORIENTED,
-    );
+    let trimesh = Trimesh::with_flags(mesh.positions.clone(), mesh.triangles.clone(), flags);
     trimesh.ok().map(SharedShape::new)
 }

@@ -16,6 +16,7 @@ mod preview;
 mod scaffold;
 mod shelf;
 mod snap;
+mod sweep;
 mod symmetry;
 mod units;
 mod world;
@@ -36,6 +37,7 @@ pub use scaffold::{Draws, LinesShown, ScaffoldSettings};
 pub use shelf::ShelfSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
 pub use symmetry::{MirrorPlane, SymmetrySettings};
+pub use sweep::{SweepHands, SweepItem, SweepSettings, SweepShape};
 pub use units::UnitSettings;
 pub use world::WorldSettings;
 
@@ -61,6 +63,8 @@ pub struct Settings {
     pub snap: SnapSettings,
     /// What is made is made on other sides too.
     pub symmetry: SymmetrySettings,
+    /// What sweeps become.
+    pub sweep: SweepSettings,
     /// How two hands move the world.
     pub world: WorldSettings,
     /// What one wants in a headset.
@@ -82,7 +86,7 @@ impl Settings {
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
-const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world", "scaffold"];
+const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world", "scaffold", "sweep"];
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Settings>();

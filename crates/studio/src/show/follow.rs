@@ -47,6 +47,10 @@ struct Showing {
     proxy: Option<Entity>,
 }
 
+/// One clone of a row: a child of the row's own entity.
+#[derive(Component, Clone, Copy, Debug)]
+pub(super) struct CloneOf(pub ObjectId);
+
 /// Operands shown in place of a result that is still being made.
 #[derive(Component)]
 struct StandIn;
@@ -141,8 +145,14 @@ fn show(
     mut evaluations: ResMut<Evaluations>,
     mut drawn: ResMut<Drawn>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut objects: Query<(Entity, &ObjectEntity, &mut Showing, Option<&Children>)>,
-    stand_ins: Query<(), With<StandIn>>,
+    mut objects: Query<(
+        Entity,
+        &ObjectEntity,
+        &mut Showing,
+        &MeshMaterial3d<StandardMaterial>,
+        Option<&Children>,
+    )>,
+    stand_ins: Query<(), Or<(With<StandIn>, With<CloneOf>)>>,
     delivered: Res<Delivered>,
     mut awake: Local<u8>,
     mut commands: Commands,
@@ -155,14 +165,14 @@ fn show(
         left => left - 1,
     };
     let document = project.document();
-    for (entity, id, mut showing, children) in &mut objects {
+    for (entity, id, mut showing, look, children) in &mut objects {
         let Some(object) = document.object(id.0) else {
             continue;
         };
         let made = match &object.kind {
             // Drawn without being made.
             Kind::Line(_) | Kind::Stroke(_) => continue,
-            Kind::Solid(recipe) => {
+            Kind::Solid(recipe) | Kind::Sheet(recipe) => {
                 // The document's step first, which is what update makes; then finer, for the eye.
                 let steps = display_steps(document, object, recipe);
                 let shown = showing.solid;
@@ -186,7 +196,15 @@ fn show(
                 };
                 showing.solid = Some(key);
                 let handle = drawn.handle(key, &made, &mut meshes);
-                commands.entity(entity).insert(Mesh3d(handle));
+                match &made.places {
+                    Some(places) => {
+                        commands.entity(entity).remove::<Mesh3d>();
+                        stand(places, &handle, look, entity, id.0, &mut commands);
+                    }
+                    None => {
+                        commands.entity(entity).insert(Mesh3d(handle));
+                    }
+                }
                 made
             }
             // Shown by a room of its own.
@@ -245,10 +263,39 @@ pub(crate) fn display_steps(document: &Document, object: &Object, recipe: &Recip
     // Below this the eye gains nothing and the memory pays.
     let fine = document.step() >= 0.004;
     match recipe.node() {
-        Node::Component { .. } | Node::Primitive(_) if fine => vec![0.5 * step],
+        Node::Component { .. } | Node::Primitive(_) | Node::Sweep(_) | Node::Clones { .. }
+            if fine =>
+        {
+            vec![0.5 * step]
+        }
         _ if fine => vec![0.5 * step, step],
         _ => vec![step],
     }
+}
+
+/// The clones of a row, each an entity that shares mesh and look with the others, so that they are
+/// drawn together.
+fn stand(
+    places: &[midair_field::Place],
+    mesh: &Handle<Mesh>,
+    look: &MeshMaterial3d<StandardMaterial>,
+    row: Entity,
+    object: ObjectId,
+    commands: &mut Commands,
+) {
+    let each: Vec<_> = places
+        .iter()
+        .map(|p| {
+            let at = Transform {
+                translation: p.translation,
+                rotation: p.rotation,
+                scale: Vec3::splat(p.scale),
+            };
+            let drawn = (Mesh3d(mesh.clone()), look.clone(), at);
+            (CloneOf(object), drawn, ChildOf(row))
+        })
+        .collect();
+    commands.spawn_batch(each);
 }
 
 /// Until a fresh result is there, its operands are shown where they stood.

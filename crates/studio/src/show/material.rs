@@ -2,6 +2,7 @@ use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::
 use midair_document::{Kind, Object};
 use midair_solid::{INK, MATERIALS, MaterialInfo};
 
+use super::follow::CloneOf;
 use super::{Cue, Cues, ObjectEntity, Tint};
 use crate::project::Project;
 use crate::settings::{LinesShown, RoomKind, Settings};
@@ -23,6 +24,8 @@ struct Look {
     /// A mirror image shows the other side of its triangles.
     mirrored: bool,
     ink: Option<Ink>,
+    /// A surface without inside is seen from both sides.
+    open: bool,
 }
 
 /// What decides how something drawn looks.
@@ -39,7 +42,7 @@ impl Ink {
         let stroke = match kind {
             Kind::Line(_) => false,
             Kind::Stroke(_) => true,
-            Kind::Solid(_) | Kind::Foreign { .. } => return None,
+            _ => return None,
         };
         Some(Self {
             stroke,
@@ -69,6 +72,7 @@ impl Look {
             material: MaterialInfo::index_of(object),
             mirrored: object.placement.scale.to_array().iter().product::<f32>() < 0.0,
             ink: Ink::of(&object.kind, settings),
+            open: object.sheet().is_some(),
         }
     }
 
@@ -117,11 +121,12 @@ impl Look {
             } else {
                 AlphaMode::Opaque
             },
-            cull_mode: Some(if self.mirrored {
-                Face::Front
-            } else {
-                Face::Back
-            }),
+            double_sided: self.open,
+            cull_mode: match (self.open, self.mirrored) {
+                (true, _) => None,
+                (false, true) => Some(Face::Front),
+                (false, false) => Some(Face::Back),
+            },
             ..default()
         }
     }
@@ -146,8 +151,10 @@ fn paint(
     settings: Res<Settings>,
     mut looks: ResMut<Looks>,
     mut materials: ResMut<Assets<StandardMaterial>>,
-    mut objects: Query<(&ObjectEntity, &mut MeshMaterial3d<StandardMaterial>)>,
+    mut objects: Query<(&ObjectEntity, &mut MeshMaterial3d<StandardMaterial>), Without<CloneOf>>,
+    mut clones: Query<(&CloneOf, &mut MeshMaterial3d<StandardMaterial>)>,
 ) {
+    let mut changed = Vec::new();
     let plain = Cue::default();
     for (object, mut material) in &mut objects {
         let cue = cues.0.get(&object.0).unwrap_or(&plain);
@@ -164,6 +171,15 @@ fn paint(
             .or_insert_with(|| materials.add(look.material()));
         if material.0 != *wanted {
             material.0 = wanted.clone();
+            changed.push((object.0, wanted.clone()));
+        }
+    }
+    if changed.is_empty() || clones.is_empty() {
+        return;
+    }
+    for (of, mut material) in &mut clones {
+        if let Some((_, look)) = changed.iter().find(|(id, _)| *id == of.0) {
+            material.0 = look.clone();
         }
     }
 }

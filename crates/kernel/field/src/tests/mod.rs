@@ -3,6 +3,7 @@ mod culling;
 mod distances;
 mod incremental;
 mod recipes;
+mod swept;
 
 use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;

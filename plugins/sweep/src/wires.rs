@@ -1,0 +1,214 @@
+//! What is being swept, as a net of lines: only what is new is sent to the graphics card.
+//!
+//! The net is cut into pieces of [`PIECE`] curves. A full piece is sent once and never again; the last
+//! one, with the curve that the hands hold now, is sent anew each frame. So the bytes of a frame do
+//! not grow with the surface.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::light::NotShadowCaster;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+use midair_studio::settings::{Settings, SweepShape};
+use midair_studio::{project::Project, show::transform};
+use midair_swept::Rib;
+
+use crate::edit;
+use crate::phase::{Draft, Phase};
+
+/// Curves in one piece.
+pub const PIECE: usize = 16;
+/// Every so many points a line runs along the sweep.
+const ALONG: usize = 4;
+
+/// The pieces of the net.
+#[derive(Resource, Default)]
+pub struct Wires {
+    /// Full ones.
+    pieces: Vec<Entity>,
+    /// The last one, and the entity that shows it.
+    tail: Option<(Entity, Handle<Mesh>)>,
+    material: Option<Handle<StandardMaterial>>,
+    /// How many curves full pieces hold.
+    sent: usize,
+    /// What the full pieces were made from: they are made anew where this changes.
+    first: Option<(Rib, bool, u32)>,
+    /// The curves the pieces were made from, to notice that they were smoothed.
+    seam: Option<Rib>,
+    bytes: usize,
+    bent: bool,
+}
+
+impl Wires {
+    /// Bytes handed over to be sent to the graphics card in the last frame.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Full pieces so far.
+    pub fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
+    pub(crate) fn clear(&mut self, commands: &mut Commands) {
+        for entity in self.pieces.drain(..) {
+            commands.entity(entity).try_despawn();
+        }
+        if let Some((entity, _)) = self.tail.take() {
+            commands.entity(entity).try_despawn();
+        }
+        self.sent = 0;
+        self.first = None;
+        self.seam = None;
+        self.bytes = 0;
+        self.bent = false;
+    }
+}
+
+pub(crate) fn draw(
+    draft: Res<Draft>,
+    settings: Res<Settings>,
+    project: Res<Project>,
+    mut wires: ResMut<Wires>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut commands: Commands,
+) {
+    let wires = &mut *wires;
+    if let Phase::Editing {
+        object,
+        grip: Some(grip),
+        ..
+    } = &draft.phase
+    {
+        // All of it moves at once: one mesh, of every curve that does.
+        if let Some((sweep, placement)) = edit::curves(&project, *object) {
+            let closed = sweep.profile == midair_swept::Profile::Tube;
+            let mesh = net(&grip.bent, closed, sweep.count.min(32) as usize);
+            wires.bytes = size(&mesh);
+            wires.bent = true;
+            let at = transform(&placement);
+            tail(wires, mesh, at, &mut meshes, &mut materials, &mut commands);
+        }
+        return;
+    }
+    if !draft.is_sweeping() || draft.ribs.is_empty() {
+        if !wires.pieces.is_empty() || wires.tail.is_some() {
+            wires.clear(&mut commands);
+        }
+        return;
+    }
+    if settings.sweep.shape == SweepShape::Clones && !settings.sweep.spread {
+        return;
+    }
+    let closed = settings.sweep.shape == SweepShape::Tube;
+    let count = settings.sweep.count;
+    let first = draft.ribs.first().map(|r| (*r, closed, count));
+    let seam = wires.sent.checked_sub(1).and_then(|i| draft.ribs.get(i));
+    if first != wires.first || seam != wires.seam.as_ref() || wires.bent {
+        wires.clear(&mut commands);
+        wires.first = first;
+    }
+    wires.bytes = 0;
+    // A piece begins with the last curve of the one before, so that no gap is between them.
+    while draft.ribs.len() > wires.sent + PIECE {
+        let from = wires.sent.saturating_sub(1);
+        wires.sent += PIECE;
+        wires.seam = draft.ribs.get(wires.sent - 1).copied();
+        let mesh = net(&draft.ribs[from..wires.sent], closed, count as usize);
+        wires.bytes += size(&mesh);
+        let look = MeshMaterial3d(material(&mut wires.material, &mut materials));
+        let mesh = Mesh3d(meshes.add(mesh));
+        let piece = commands.spawn((
+            Name::new("Wires"),
+            mesh,
+            look,
+            Transform::IDENTITY,
+            NotShadowCaster,
+        ));
+        wires.pieces.push(piece.id());
+    }
+    let mut last: Vec<Rib> = draft.ribs[wires.sent.saturating_sub(1)..].to_vec();
+    last.extend(draft.live);
+    let mesh = net(&last, closed, count as usize);
+    wires.bytes += size(&mesh);
+    tail(
+        wires,
+        mesh,
+        Transform::IDENTITY,
+        &mut meshes,
+        &mut materials,
+        &mut commands,
+    );
+}
+
+fn tail(
+    wires: &mut Wires,
+    mesh: Mesh,
+    at: Transform,
+    meshes: &mut Assets<Mesh>,
+    materials: &mut Assets<StandardMaterial>,
+    commands: &mut Commands,
+) {
+    match &wires.tail {
+        Some((_, handle)) => {
+            // Only fails where the handle is gone, which this very table holds.
+            let _ = meshes.insert(handle.id(), mesh);
+        }
+        None => {
+            let handle = meshes.add(mesh);
+            let look = MeshMaterial3d(material(&mut wires.material, materials));
+            let drawn = (Mesh3d(handle.clone()), look, at, NotShadowCaster);
+            let entity = commands.spawn((Name::new("Wires"), drawn)).id();
+            wires.tail = Some((entity, handle));
+        }
+    }
+}
+
+fn material(
+    kept: &mut Option<Handle<StandardMaterial>>,
+    materials: &mut Assets<StandardMaterial>,
+) -> Handle<StandardMaterial> {
+    kept.get_or_insert_with(|| {
+        materials.add(StandardMaterial {
+            base_color: Color::srgb(0.78, 0.82, 0.92),
+            unlit: true,
+            ..default()
+        })
+    })
+    .clone()
+}
+
+/// The bytes a net takes.
+fn size(mesh: &Mesh) -> usize {
+    mesh.count_vertices() * 12 + mesh.indices().map_or(0, |i| i.len() * 4)
+}
+
+/// Curves, and lines from one to the next at every fourth point.
+pub(crate) fn net(ribs: &[Rib], closed: bool, count: usize) -> Mesh {
+    let count = count.max(2);
+    let mut points = Vec::new();
+    for rib in ribs {
+        if closed {
+            rib.ring_into(count, &mut points);
+        } else {
+            rib.points_into(count, &mut points);
+        }
+    }
+    let columns = (points.len() / ribs.len().max(1)).max(1);
+    let mut lines: Vec<u32> = Vec::with_capacity(2 * points.len() + points.len() / 2);
+    for (j, _) in ribs.iter().enumerate() {
+        let at = |i: usize| (j * columns + i % columns) as u32;
+        let last = if closed { columns } else { columns - 1 };
+        (0..last).for_each(|i| lines.extend([at(i), at(i + 1)]));
+        if j > 0 {
+            let marks = (0..columns).filter(|i| i % ALONG == 0 || (!closed && *i == columns - 1));
+            marks.for_each(|i| lines.extend([at(i) - columns as u32, at(i)]));
+        }
+    }
+    Mesh::new(
+        PrimitiveTopology::LineList,
+        RenderAssetUsages::RENDER_WORLD | RenderAssetUsages::MAIN_WORLD,
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
+    .with_inserted_indices(Indices::U32(lines))
+}
