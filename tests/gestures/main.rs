@@ -26,6 +26,7 @@ mod small;
 mod studio;
 mod surfaces;
 mod symmetry;
+mod sweep;
 mod training;
 mod trouble;
 mod tutorial;

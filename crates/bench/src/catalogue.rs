@@ -5,7 +5,7 @@ use midair_solid::SolidError;
 
 use crate::figure::Figure;
 use crate::measure::Budget;
-use crate::{bake, csg, fuse, many, scaffold, surface};
+use crate::{bake, csg, fuse, many, scaffold, surface, sweep};
 
 /// A workload that could not be carried out.
 #[derive(Debug, thiserror::Error)]
@@ -65,6 +65,7 @@ enum Work {
     Surface(surface::Subject),
     Fuse,
     Scaffold(scaffold::Subject),
+    Sweep(sweep::Subject),
 }
 
 impl Workload {
@@ -96,6 +97,7 @@ impl Workload {
             Work::Surface(subject) => surface::run(subject, budget)?,
             Work::Fuse => fuse::run(budget)?,
             Work::Scaffold(subject) => scaffold::run(subject, budget)?,
+            Work::Sweep(subject) => sweep::run(subject, budget)?,
         };
         let (times, details) = measured;
         let figure = Figure::new(&self.name, self.paper, &times, details);
@@ -140,6 +142,12 @@ pub fn workloads() -> Vec<Workload> {
         all.push(Workload {
             paper: subject.paper(),
             ..Workload::new(subject.name(), Work::Scaffold(subject))
+        });
+    }
+    for subject in sweep::Subject::ALL {
+        all.push(Workload {
+            paper: Some(subject.paper()),
+            ..Workload::new(subject.name(), Work::Sweep(subject))
         });
     }
     all

@@ -8,7 +8,7 @@
 //! - `figure`: what comes out, as JSON and as a table.
 //! - `report`: one after the other, a row for each.
 //! - `catalogue`: every workload by name.
-//! - `csg`, `surface`, `bake`, `fuse`, `many`, `scaffold`: the work itself.
+//! - `csg`, `surface`, `bake`, `fuse`, `many`, `scaffold`, `sweep`: the work itself.
 //!
 //! ```
 //! use midair_bench::{Budget, Outcome, select};
@@ -32,6 +32,7 @@ mod measure;
 mod report;
 mod scaffold;
 mod surface;
+mod sweep;
 
 pub use catalogue::{BenchError, Outcome, UnknownName, Workload, select, workloads};
 pub use figure::{Details, Figure, Table};

@@ -10,15 +10,13 @@ use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 use midair_studio::settings::{Settings, SweepShape};
 use midair_studio::{project::Project, show::transform};
-use midair_swept::Rib;
+use midair_swept::{Net, Rib};
 
 use crate::edit;
 use crate::phase::{Draft, Phase};
 
 /// Curves in one piece.
 pub const PIECE: usize = 16;
-/// Every so many points a line runs along the sweep.
-const ALONG: usize = 4;
 
 /// The pieces of the net.
 #[derive(Resource, Default)]
@@ -83,8 +81,8 @@ pub(crate) fn draw(
         // All of it moves at once: one mesh, of every curve that does.
         if let Some((sweep, placement)) = edit::curves(&project, *object) {
             let closed = sweep.profile == midair_swept::Profile::Tube;
-            let mesh = net(&grip.bent, closed, sweep.count.min(32) as usize);
-            wires.bytes = size(&mesh);
+            let (mesh, bytes) = net(&grip.bent, closed, sweep.count.min(32) as usize);
+            wires.bytes = bytes;
             wires.bent = true;
             let at = transform(&placement);
             tail(wires, mesh, at, &mut meshes, &mut materials, &mut commands);
@@ -114,8 +112,8 @@ pub(crate) fn draw(
         let from = wires.sent.saturating_sub(1);
         wires.sent += PIECE;
         wires.seam = draft.ribs.get(wires.sent - 1).copied();
-        let mesh = net(&draft.ribs[from..wires.sent], closed, count as usize);
-        wires.bytes += size(&mesh);
+        let (mesh, bytes) = net(&draft.ribs[from..wires.sent], closed, count as usize);
+        wires.bytes += bytes;
         let look = MeshMaterial3d(material(&mut wires.material, &mut materials));
         let mesh = Mesh3d(meshes.add(mesh));
         let piece = commands.spawn((
@@ -129,8 +127,8 @@ pub(crate) fn draw(
     }
     let mut last: Vec<Rib> = draft.ribs[wires.sent.saturating_sub(1)..].to_vec();
     last.extend(draft.live);
-    let mesh = net(&last, closed, count as usize);
-    wires.bytes += size(&mesh);
+    let (mesh, bytes) = net(&last, closed, count as usize);
+    wires.bytes += bytes;
     tail(
         wires,
         mesh,
@@ -178,37 +176,15 @@ fn material(
     .clone()
 }
 
-/// The bytes a net takes.
-fn size(mesh: &Mesh) -> usize {
-    mesh.count_vertices() * 12 + mesh.indices().map_or(0, |i| i.len() * 4)
-}
-
-/// Curves, and lines from one to the next at every fourth point.
-pub(crate) fn net(ribs: &[Rib], closed: bool, count: usize) -> Mesh {
-    let count = count.max(2);
-    let mut points = Vec::new();
-    for rib in ribs {
-        if closed {
-            rib.ring_into(count, &mut points);
-        } else {
-            rib.points_into(count, &mut points);
-        }
-    }
-    let columns = (points.len() / ribs.len().max(1)).max(1);
-    let mut lines: Vec<u32> = Vec::with_capacity(2 * points.len() + points.len() / 2);
-    for (j, _) in ribs.iter().enumerate() {
-        let at = |i: usize| (j * columns + i % columns) as u32;
-        let last = if closed { columns } else { columns - 1 };
-        (0..last).for_each(|i| lines.extend([at(i), at(i + 1)]));
-        if j > 0 {
-            let marks = (0..columns).filter(|i| i % ALONG == 0 || (!closed && *i == columns - 1));
-            marks.for_each(|i| lines.extend([at(i) - columns as u32, at(i)]));
-        }
-    }
-    Mesh::new(
+/// Handed over to be drawn.
+fn net(ribs: &[Rib], closed: bool, count: usize) -> (Mesh, usize) {
+    let net = Net::new(ribs, closed, count);
+    let bytes = net.bytes();
+    let mesh = Mesh::new(
         PrimitiveTopology::LineList,
         RenderAssetUsages::RENDER_WORLD | RenderAssetUsages::MAIN_WORLD,
     )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
-    .with_inserted_indices(Indices::U32(lines))
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, net.points)
+    .with_inserted_indices(Indices::U32(net.lines));
+    (mesh, bytes)
 }

@@ -3,6 +3,7 @@
 //! - [`Rib`]: the curve at one moment, as the hands held it.
 //! - [`Sweep`]: ribs in the order they were swept, a sheet or a tube; with thickness or caps a solid.
 //! - [`Row`]: where clones stand along a rib, or over all of them.
+//! - [`Net`]: a sweep as lines, as it is shown while it is made.
 //! - [`smoothed`], [`bent`], [`cut`]: what can be done with ribs afterwards.
 //!
 //! Lengths are metres. A solid's mesh is closed, manifold and consistently wound whatever the ribs
@@ -37,12 +38,14 @@
 
 mod edit;
 mod lattice;
+mod net;
 mod rib;
 mod row;
 mod solid;
 mod sweep;
 
 pub use edit::{bent, cut, moved, smoothed};
+pub use net::Net;
 pub use rib::Rib;
 pub use row::{MAX_CLONES, Place, Row};
 pub use solid::{Solid, touches};
