@@ -17,12 +17,13 @@ use bevy::render::RenderPlugin;
 use bevy::render::settings::{RenderCreation, WgpuSettings};
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use midair_brush::BrushPlugin;
 use midair_csg::AssemblePlugin;
 use midair_flatscreen::FlatscreenPlugin;
 use midair_library::Volumes;
-use midair_space::SpacePlugin;
 use midair_openxr::{Headset, HeadsetPlugin};
 use midair_scaffold::ScaffoldPlugin;
+use midair_space::SpacePlugin;
 use midair_studio::{
     StudioPlugin,
     evaluate::Evaluations,
@@ -45,7 +46,13 @@ impl Plugin for MidairPlugins {
     fn build(&self, app: &mut App) {
         // A user's bad input never ends the app: what a system reports is logged.
         app.insert_resource(FallbackErrorHandler(warn))
-            .add_plugins((StudioPlugin, AssemblePlugin, ScaffoldPlugin, SweepPlugin));
+            .add_plugins((
+                StudioPlugin,
+                AssemblePlugin,
+                ScaffoldPlugin,
+                SweepPlugin,
+                BrushPlugin,
+            ));
     }
 }
 
@@ -114,7 +121,7 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
     let mut plugins = DefaultPlugins.set(window).set(bevy::log::LogPlugin {
         // The app's own lines are what a person should see.
         filter: format!(
-            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_scaffold=warn,midair_sweep=warn,midair_library=warn,midair_space=warn{}",
+            "error,bevy_render::extract_resource=off,midair=warn,midair_studio=warn,midair_csg=warn,midair_scaffold=warn,midair_sweep=warn,midair_brush=warn,midair_library=warn,midair_space=warn{}",
             // Without a window the command itself says what was noticed, once.
             if stage.is_live() { ",midair_openxr=info" } else { ",midair_studio::notice=off" }
         ),

@@ -1,6 +1,8 @@
 //! Whole gestures through the hands, in the whole studio; and the training sessions, measured
 //! against an exact boolean.
 
+mod brush;
+mod brush_session;
 mod carry;
 mod desk;
 mod dropping;
@@ -25,8 +27,8 @@ mod shapes;
 mod small;
 mod studio;
 mod surfaces;
-mod symmetry;
 mod sweep;
+mod symmetry;
 mod training;
 mod trouble;
 mod tutorial;

@@ -5,7 +5,7 @@ use midair_solid::SolidError;
 
 use crate::figure::Figure;
 use crate::measure::Budget;
-use crate::{bake, csg, fuse, many, scaffold, surface, sweep};
+use crate::{bake, brush, csg, fuse, many, scaffold, surface, sweep};
 
 /// A workload that could not be carried out.
 #[derive(Debug, thiserror::Error)]
@@ -66,6 +66,7 @@ enum Work {
     Fuse,
     Scaffold(scaffold::Subject),
     Sweep(sweep::Subject),
+    Brush(brush::Subject),
 }
 
 impl Workload {
@@ -98,6 +99,7 @@ impl Workload {
             Work::Fuse => fuse::run(budget)?,
             Work::Scaffold(subject) => scaffold::run(subject, budget)?,
             Work::Sweep(subject) => sweep::run(subject, budget)?,
+            Work::Brush(subject) => brush::run(subject, budget)?,
         };
         let (times, details) = measured;
         let figure = Figure::new(&self.name, self.paper, &times, details);
@@ -148,6 +150,12 @@ pub fn workloads() -> Vec<Workload> {
         all.push(Workload {
             paper: Some(subject.paper()),
             ..Workload::new(subject.name(), Work::Sweep(subject))
+        });
+    }
+    for subject in brush::Subject::all() {
+        all.push(Workload {
+            paper: subject.paper(),
+            ..Workload::new(subject.name(), Work::Brush(subject))
         });
     }
     all

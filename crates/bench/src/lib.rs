@@ -23,6 +23,7 @@
 //! ```
 
 mod bake;
+mod brush;
 mod catalogue;
 mod csg;
 mod figure;

@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use midair_field::Op;
+use midair_field::{Canvas, Node, Op, Recipe, Stroke};
 
 use crate::drawing::DrawingFault;
 use crate::recipes::{RecipeFault, check_recipe, check_sheet, is_box};
@@ -42,6 +42,12 @@ pub enum EditError {
     /// A picture with impossible numbers.
     #[error("a picture is 0.001 to 100 metres wide and high, and its opacity 0 to 1")]
     Reference,
+    /// An object that is no painting.
+    #[error("{0} is not a painting")]
+    NoPainting(ObjectId),
+    /// Strokes that a painting does not have.
+    #[error("the painting has no strokes {0} to {1}")]
+    NoStroke(usize, usize),
     /// A step that is not a number.
     #[error("{0} is not a step")]
     Step(f32),
@@ -134,6 +140,12 @@ impl Document {
                 let kind = std::mem::replace(&mut self.change(*id)?.kind, kind.clone());
                 Edit::SetKind { id: *id, kind }
             }
+            Edit::SetStrokes {
+                id,
+                at,
+                gone,
+                strokes,
+            } => self.set_strokes(*id, *at, *gone, strokes)?,
             Edit::Rename { id, name } => Edit::Rename {
                 id: *id,
                 name: std::mem::replace(&mut self.change(*id)?.name, name.clone()),
@@ -273,6 +285,41 @@ impl Document {
                     edits: inverse,
                 }
             }
+        })
+    }
+
+    fn set_strokes(
+        &mut self,
+        id: ObjectId,
+        at: usize,
+        gone: usize,
+        strokes: &[Stroke],
+    ) -> Result<Edit, EditError> {
+        let object = self.shared(id)?;
+        let Kind::Solid(recipe) = &object.kind else {
+            return Err(EditError::NoPainting(id));
+        };
+        let Node::Canvas(canvas) = recipe.node() else {
+            return Err(EditError::NoPainting(id));
+        };
+        let end = at.saturating_add(gone);
+        if end > canvas.strokes.len() {
+            return Err(EditError::NoStroke(at + 1, end));
+        }
+        let mut next = canvas.strokes.clone();
+        let gone: Vec<Stroke> = next.splice(at..end, strokes.iter().cloned()).collect();
+        let canvas = Canvas {
+            strokes: next,
+            ..*canvas
+        };
+        let kind = Kind::Solid(Recipe::new(Node::Canvas(canvas)));
+        kind_fits(&kind)?;
+        self.change(id)?.kind = kind;
+        Ok(Edit::SetStrokes {
+            id,
+            at,
+            gone: strokes.len(),
+            strokes: gone,
         })
     }
 

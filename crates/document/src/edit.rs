@@ -2,7 +2,7 @@ use std::collections::HashSet;
 use std::mem::size_of;
 use std::sync::Arc;
 
-use midair_field::{Node, Op, Placement, Recipe};
+use midair_field::{Node, Op, Placement, Recipe, Skeleton, Stroke};
 use serde::{Deserialize, Serialize};
 
 use crate::recipes::walk;
@@ -58,6 +58,17 @@ pub enum Edit<R = Recipe> {
         id: ObjectId,
         /// What it is from now on.
         kind: Kind<R>,
+    },
+    /// Puts strokes into a painting, in the place of some of its own or between them.
+    SetStrokes {
+        /// Which painting.
+        id: ObjectId,
+        /// Before which of its strokes, from 0.
+        at: usize,
+        /// How many of its strokes from there on go.
+        gone: usize,
+        /// What comes in their place.
+        strokes: Vec<Stroke<R>>,
     },
     /// Calls an object something else.
     Rename {
@@ -232,6 +243,17 @@ impl<R: Clone> Edit<R> {
                 id,
                 kind: kind.map(f)?,
             },
+            SetStrokes {
+                id,
+                at,
+                gone,
+                strokes,
+            } => SetStrokes {
+                id,
+                at,
+                gone,
+                strokes: strokes.iter().map(|s| s.map(f)).collect::<Result<_, _>>()?,
+            },
             Composite { name, edits } => {
                 // A loop, so that the closure's type does not grow with each level.
                 let mut mapped = Vec::with_capacity(edits.len());
@@ -287,6 +309,9 @@ impl Edit {
             Self::Add { .. } | Self::Restore { .. } => "Add",
             Self::Remove { .. } | Self::Forget { .. } => "Delete",
             Self::Replace { .. } | Self::SetKind { .. } => "Change",
+            Self::SetStrokes { gone: 0, .. } => "Paint",
+            Self::SetStrokes { strokes, .. } if strokes.is_empty() => "Delete stroke",
+            Self::SetStrokes { .. } => "Change stroke",
             Self::SetPlacement { .. } => "Move",
             Self::Rename { .. } => "Rename",
             Self::SetVisible { visible: true, .. } => "Show",
@@ -352,6 +377,16 @@ impl Edit {
                         + kind_bytes(&object.kind, seen)
                 }
                 Self::SetKind { kind, .. } => kind_bytes(kind, seen),
+                Self::SetStrokes { strokes, .. } => {
+                    let one = |stroke: &Stroke| {
+                        let mut bytes = stroke_bytes(stroke);
+                        if let Skeleton::Volume(recipe) = &stroke.skeleton {
+                            walk(recipe, seen, &mut |r| bytes += node_bytes(r.node()));
+                        }
+                        bytes
+                    };
+                    strokes.iter().map(one).sum()
+                }
                 Self::Rename { name, .. } => name.len(),
                 Self::SetMaterial { material, .. } => material.as_ref().map_or(0, String::len),
                 Self::SetPending { pending } => size_of_val(&pending[..]),
@@ -375,6 +410,13 @@ impl Edit {
             | Self::Restore { object, .. }
             | Self::Replace { object, .. } => f(&object.kind),
             Self::SetKind { kind, .. } => f(kind),
+            Self::SetStrokes { strokes, .. } => {
+                for stroke in strokes {
+                    if let Skeleton::Volume(recipe) = &stroke.skeleton {
+                        f(&Kind::Solid(recipe.clone()));
+                    }
+                }
+            }
             Self::Composite { edits, .. } => {
                 for edit in edits {
                     edit.kinds(f);
@@ -422,9 +464,8 @@ fn node_bytes(node: &Node) -> usize {
 
 /// Points are shared with every other state of the canvas that has this stroke; they count once
 /// more here, which errs on the safe side.
-fn stroke_bytes(stroke: &midair_field::Stroke) -> usize {
-    use midair_field::Skeleton;
-    size_of::<midair_field::Stroke>()
+fn stroke_bytes(stroke: &Stroke) -> usize {
+    size_of::<Stroke>()
         + match &stroke.skeleton {
             Skeleton::Points(points) => 16 * points.len(),
             Skeleton::Polygon(corners) => 12 * corners.len(),

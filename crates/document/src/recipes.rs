@@ -2,7 +2,7 @@ use std::collections::{HashMap, HashSet};
 
 use midair_field::{
     Canvas, CanvasError, MAX_DEPTH, MAX_LEAVES, MAX_OPERANDS, Node, Op, Operand, Placement,
-    Primitive, PrimitiveError, Recipe, RecipeHash, Row, Skeleton, Stroke, Sweep, SweepError,
+    Primitive, PrimitiveError, Recipe, RecipeHash, Row, Stroke, Sweep, SweepError,
 };
 use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
@@ -322,16 +322,7 @@ fn with_volumes<E>(
     canvas: &Canvas,
     mut next: impl FnMut() -> Result<Recipe, E>,
 ) -> Result<Canvas, E> {
-    let one = |stroke: &Stroke| {
-        let skeleton = match &stroke.skeleton {
-            Skeleton::Volume(_) => Skeleton::Volume(next()?),
-            other => other.clone(),
-        };
-        Ok(Stroke {
-            skeleton,
-            ..stroke.clone()
-        })
-    };
+    let one = |stroke: &Stroke| stroke.map(&mut |_| next());
     Ok(Canvas {
         strokes: canvas.strokes.iter().map(one).collect::<Result<_, E>>()?,
         ..*canvas

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// The categories Midair itself uses, in the order of the shelf. Others follow by name, and
 /// [`OWN`] comes last.
-pub const CATEGORIES: [&str; 5] = ["Solids", "Chair", "Cup", "Numerals", "Letters"];
+pub const CATEGORIES: [&str; 6] = ["Solids", "Brushes", "Chair", "Cup", "Numerals", "Letters"];
 
 /// The category of what the user imports or saves.
 pub const OWN: &str = "Own";

@@ -193,6 +193,27 @@ mod tests {
         assert_eq!(moved.mesh(), make(&pair(0.07)).mesh());
     }
 
+    /// 3DBrushVR §4.3: a point brush draws a sphere.
+    #[test]
+    fn the_surface_of_a_point_is_its_sphere_to_half_a_voxel() {
+        use midair_field::{Canvas, Stroke};
+        let go = AtomicBool::new(false);
+        for step in [0.02, 0.01, 0.005] {
+            let at = glam::Vec3::new(0.013, -0.007, 0.021);
+            let canvas = Canvas {
+                strokes: vec![Stroke::point(at, 0.1)],
+                ..Canvas::default()
+            };
+            let recipe = Recipe::new(Node::Canvas(canvas));
+            let solid = Solid::make(&recipe, &Placement::IDENTITY, step, &(), &go).unwrap();
+            let mesh = solid.mesh();
+            assert!(mesh.triangles.len() > 100);
+            for p in &mesh.positions {
+                assert!((p.distance(at) - 0.1).abs() < 0.5 * step, "{p} at {step}");
+            }
+        }
+    }
+
     #[test]
     fn a_set_flag_cancels() {
         let stop = AtomicBool::new(true);

@@ -84,6 +84,10 @@ pub(crate) fn commands(
             commands.write(command);
         }
     }
+    let brush = tools.active().is_some_and(|t| t.id.as_str() == "brush");
+    if brush && controls.just_pressed(Control::Erase) {
+        commands.write(Settings::command("brush.erase", !settings.brush.erase));
+    }
     let wireframe = Settings::command("look.wireframe", !settings.look.wireframe);
     let orthographic = Settings::command("look.orthographic", !settings.look.orthographic);
     for (control, command) in [

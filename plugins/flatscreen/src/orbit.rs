@@ -7,6 +7,7 @@ use bevy::prelude::*;
 use midair_studio::{
     hands::HandsInput,
     show::{Eye, camera},
+    tools::Aim,
     world::Similarity,
 };
 
@@ -189,7 +190,7 @@ pub(crate) fn steer(
     scroll: Res<AccumulatedMouseScroll>,
     mut moved: MessageReader<CursorMoved>,
     screen: Res<Screen>,
-    pointer: Res<Pointer>,
+    (pointer, aim): (Res<Pointer>, Res<Aim>),
     time: Res<Time>,
     camera: Single<(&mut Orbit, &mut Transform)>,
     windows: Query<&Window>,
@@ -221,7 +222,8 @@ pub(crate) fn steer(
         next.fly(&controls, time.delta_secs());
     }
     // While something is held the wheel is the hand's.
-    if scroll.delta.y != 0.0 && !panel && !pointer.has_wheel() {
+    let sizing = aim.draws && controls.pressed(Control::SnapOff);
+    if scroll.delta.y != 0.0 && !panel && !pointer.has_wheel() && !sizing {
         next.zoom(
             0.88_f32.powf(lines(&scroll)),
             pointer.pose(pointer.leading).position,

@@ -50,6 +50,9 @@ pub struct Pointer {
     pub(crate) enter_spent: bool,
     /// How deep in the view what is being drawn was last, in metres.
     drawn: Option<f32>,
+    /// Lines of the wheel that are to be clicks of the cross, and whether one is down.
+    wheel: f32,
+    clicked: bool,
     /// Components that were picked and not placed yet, and where in the window they were let go.
     picked: Vec<(String, Option<Vec2>)>,
 }
@@ -84,6 +87,8 @@ impl Default for Pointer {
             stretching: false,
             enter_spent: false,
             drawn: None,
+            wheel: 0.0,
+            clicked: false,
             picked: Vec::new(),
         }
     }
@@ -201,8 +206,7 @@ pub(crate) fn point(
     if let Some(mut grip) = pointer.grip {
         // In the frame of the release too: it comes to rest where it was dragged to.
         if pressed(Control::Turn) {
-            let turn = Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
-                * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01);
+            let turn = turn_by(eye, travelled);
             pointer.turn =
                 (eye.rotation.inverse() * turn * eye.rotation * pointer.turn).normalize();
             grip.spent += travelled;
@@ -224,7 +228,15 @@ pub(crate) fn point(
         pointer.grip = Some(grip);
     } else if !unlatched {
         pointer.over = false;
-        pointer.turn = Quat::IDENTITY;
+        let turning = aim.draws && pressed(Control::Turn);
+        if turning {
+            let turn = turn_by(eye, travelled);
+            pointer.turn =
+                (eye.rotation.inverse() * turn * eye.rotation * pointer.turn).normalize();
+        } else if !aim.draws {
+            pointer.turn = Quat::IDENTITY;
+        }
+        let sizing = aim.draws && controls.pressed(Control::SnapOff);
         let drawing = aim.draws && pointer.acting;
         // A line that is being drawn goes on under a panel.
         pointer.poses[side as usize] = match ray.filter(|_| drawing || !panel) {
@@ -244,7 +256,10 @@ pub(crate) fn point(
                         .unwrap_or_else(|| on_plane(&ray, eye, &plane))
                 });
                 let mut far = (position - eye.translation).dot(*eye.forward());
-                let position = if drawing && caught.is_none() && scroll.delta.y != 0.0 {
+                let position = if turning {
+                    // It stays where it is while it turns.
+                    pointer.poses[side as usize].position
+                } else if drawing && caught.is_none() && scroll.delta.y != 0.0 && !sizing {
                     far = (far * 1.05_f32.powf(lines(&scroll))).clamp(0.05, 40.0);
                     at_depth(&ray, eye, far).unwrap_or(position)
                 } else {
@@ -278,9 +293,10 @@ pub(crate) fn point(
                 if clicked && !pointer.over && !ruler.on && !draws {
                     pointer.band = cursor.map(|from| Band::new(from, !started));
                 }
+                let up = hit.map_or(Vec3::Y, |h| h.normal);
                 Pose {
                     position,
-                    rotation: eye.rotation,
+                    rotation: aim.turned(eye.rotation, up, pointer.turn),
                 }
             }
             None => {
@@ -340,6 +356,22 @@ pub(crate) fn point(
     .map(|(_, action)| action)
     .collect();
     actions.set(Action::Act, pointer.acting);
+    // With Ctrl the wheel is the cross: a click of it for each line.
+    if aim.draws && controls.pressed(Control::SnapOff) && !panel {
+        pointer.wheel = (pointer.wheel + lines(&scroll)).clamp(-20.0, 20.0);
+    } else {
+        pointer.wheel = 0.0;
+    }
+    let arm = if pointer.wheel > 0.0 {
+        Action::Up
+    } else {
+        Action::Down
+    };
+    pointer.clicked = pointer.wheel.abs() >= 1.0 && !pointer.clicked;
+    if pointer.clicked {
+        pointer.wheel -= pointer.wheel.signum();
+        actions.set(arm, true);
+    }
     actions.set(Action::Grab, pointer.grip.is_some());
     actions.set(Action::Free, controls.pressed(Control::SnapOff));
     pointer.enter_spent &= pressed(Control::Finish);
@@ -430,6 +462,12 @@ fn ray_through(camera: &Camera, eye: &Transform, at: Option<Vec2>) -> Ray3d {
         origin: eye.translation,
         direction: eye.forward(),
     })
+}
+
+/// How the wand turns while the pointer travels.
+fn turn_by(eye: &Transform, travelled: Vec2) -> Quat {
+    Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
+        * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01)
 }
 
 /// Where a ray is so deep in the view.

@@ -34,6 +34,8 @@ pub struct Made {
     pub volume: f64,
     /// What was noticed on the way, a line each.
     pub warnings: Vec<String>,
+    /// Field and surface of a painting, from which it is made again where a stroke changed it.
+    pub solid: Option<Arc<Solid>>,
     /// Bytes held, about.
     pub bytes: usize,
 }
@@ -93,6 +95,7 @@ impl Made {
             fuse_ms: 0.0,
             extract_ms: 0.0,
             warnings: Vec::new(),
+            solid: None,
             bytes,
             places: None,
             mesh,
@@ -132,8 +135,13 @@ impl Running {
         self.outcome.get()?.clone()
     }
 
-    /// What another thread is to do.
-    pub fn work(&self, recipe: Recipe, volumes: Arc<Volumes>) -> impl FnOnce() + Send + 'static {
+    /// What another thread is to do; from `base`, which gives the same and sooner, where there is one.
+    pub fn work(
+        &self,
+        recipe: Recipe,
+        base: Option<Arc<Solid>>,
+        volumes: Arc<Volumes>,
+    ) -> impl FnOnce() + Send + 'static {
         let step = self.key.step();
         let progress = self.progress.clone();
         let (cancelled, outcome) = (self.cancelled.clone(), self.outcome.clone());
@@ -153,10 +161,19 @@ impl Running {
                 if let Some(mesh) = own_mesh(&recipe) {
                     return Ok(Made::from_mesh(Arc::new(mesh)));
                 }
-                let solid = Solid::make(&recipe, &Placement::IDENTITY, step, &meshes, &cancelled)?;
+                let at = Placement::IDENTITY;
+                let solid = match &base {
+                    Some(base) => base.remake(&recipe, &at, step, &meshes, &cancelled),
+                    None => Solid::make(&recipe, &at, step, &meshes, &cancelled),
+                }?;
                 let mut made = Made::from_mesh(Arc::new(solid.mesh()));
                 made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
                 made.extract_ms = solid.extract.as_secs_f64() * 1e3;
+                if matches!(recipe.node(), Node::Canvas(_)) {
+                    // Shared with the states before and after, so most of it counts twice.
+                    made.bytes += solid.grid().bricks().count() * 1024;
+                    made.solid = Some(Arc::new(solid));
+                }
                 Ok(made)
             };
             // Whoever waits for this is told, whatever happens in here.

@@ -129,6 +129,18 @@ impl Live {
         come
     }
 
+    /// Begins with a solid that is there already, made at `finest` halved or doubled some times: what is
+    /// asked for next is made from it.
+    pub fn begin(&mut self, with: Arc<Solid>, finest: f32) {
+        self.clear();
+        let doublings = (with.grid().step() / finest).log2();
+        self.pace = Pace {
+            coarser: (2.0 * doublings).round().clamp(0.0, COARSEST as f32) as u32,
+            quick: 0,
+        };
+        self.last = Some(with);
+    }
+
     /// Whether one is on its way.
     pub fn is_busy(&self) -> bool {
         self.flight.is_some()

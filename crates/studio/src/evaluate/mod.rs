@@ -17,6 +17,7 @@ use bevy::prelude::*;
 use bevy::tasks::AsyncComputeTaskPool;
 use midair_field::{Recipe, RecipeHash};
 use midair_library::Volumes;
+use midair_solid::Solid;
 
 pub use delivery::{Deliver, Delivered, Delivery, Job};
 pub use job::Made;
@@ -100,6 +101,16 @@ impl Evaluations {
     /// The solid, if it is there; otherwise it is being made from now on. To be asked again every
     /// frame for as long as it is wanted.
     pub fn want(&mut self, recipe: &Recipe, step: f32) -> Option<Arc<Made>> {
+        self.want_after(recipe, step, None)
+    }
+
+    /// The same of a painting that was `before`: only where the two differ is it made anew.
+    pub fn want_after(
+        &mut self,
+        recipe: &Recipe,
+        step: f32,
+        before: Option<RecipeHash>,
+    ) -> Option<Arc<Made>> {
         let key = Key::new(recipe, step);
         if let Some(made) = self.made.get(&key) {
             return Some(made);
@@ -109,7 +120,11 @@ impl Evaluations {
         }
         match self.running.iter_mut().find(|r| r.key == key) {
             Some(running) => running.wanted = self.frame,
-            None => self.start(recipe.clone(), key),
+            None => {
+                let base = before.and_then(|recipe| self.made.look(&Key { recipe, ..key }));
+                let base = base.and_then(|made| made.solid.clone());
+                self.start(recipe.clone(), base, key);
+            }
         }
         None
     }
@@ -170,9 +185,9 @@ impl Evaluations {
         self.made.bytes()
     }
 
-    fn start(&mut self, recipe: Recipe, key: Key) {
+    fn start(&mut self, recipe: Recipe, base: Option<Arc<Solid>>, key: Key) {
         let running = Running::new(key, self.frame);
-        let work = running.work(recipe, self.volumes.clone());
+        let work = running.work(recipe, base, self.volumes.clone());
         AsyncComputeTaskPool::get()
             .spawn(async move { work() })
             .detach();

@@ -4,6 +4,7 @@
 //! [`Command::Set`](crate::command::Command::Set) changes it, so that a session which changes a setting plays back. A
 //! session begins with the defaults, a person with what is kept in `settings.ron`.
 
+mod brush;
 mod comfort;
 mod files;
 mod hands;
@@ -24,6 +25,7 @@ mod world;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use brush::{BrushSettings, BrushSkeleton};
 pub use comfort::{ComfortSettings, Desktop};
 pub use files::FileSettings;
 pub use hands::HandsSettings;
@@ -36,8 +38,8 @@ pub use preview::PreviewSettings;
 pub use scaffold::{Draws, LinesShown, ScaffoldSettings};
 pub use shelf::ShelfSettings;
 pub use snap::{AngleSnap, GridSnap, SnapSettings, SurfaceSnap};
-pub use symmetry::{MirrorPlane, SymmetrySettings};
 pub use sweep::{SweepHands, SweepItem, SweepSettings, SweepShape};
+pub use symmetry::{MirrorPlane, SymmetrySettings};
 pub use units::UnitSettings;
 pub use world::WorldSettings;
 
@@ -73,6 +75,8 @@ pub struct Settings {
     pub scaffold: ScaffoldSettings,
     /// How far one is with learning.
     pub help: HelpSettings,
+    /// What is set on the panel of Brush.
+    pub brush: BrushSettings,
 }
 
 impl Settings {
@@ -86,7 +90,9 @@ impl Settings {
 }
 
 /// The parts that change what hands make: a recording begins with those that are not the default.
-const SHAPING: &[&str] = &["snap", "hands", "symmetry", "world", "scaffold", "sweep"];
+const SHAPING: &[&str] = &[
+    "snap", "hands", "symmetry", "world", "scaffold", "sweep", "brush",
+];
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Settings>();

@@ -174,12 +174,21 @@ fn show(
             Kind::Line(_) | Kind::Stroke(_) => continue,
             Kind::Solid(recipe) | Kind::Sheet(recipe) => {
                 // The document's step first, which is what update makes; then finer, for the eye.
-                let steps = display_steps(document, object, recipe);
+                let mut steps = display_steps(document, object, recipe);
                 let shown = showing.solid;
+                let painted = matches!(recipe.node(), Node::Canvas(_));
+                let before = shown.filter(|_| painted).map(|k| k.recipe);
+                // A painting shown finely is made again from that, sooner than coarsely from nothing.
+                if before.is_some() && shown.map(|k| k.step()) == steps.first().copied() {
+                    steps.truncate(1);
+                }
                 let best = steps
                     .into_iter()
                     .take_while(|&s| shown != Some(Key::new(recipe, s)))
-                    .filter_map(|s| Some((Key::new(recipe, s), evaluations.want(recipe, s)?)))
+                    .filter_map(|s| {
+                        let made = evaluations.want_after(recipe, s, before)?;
+                        Some((Key::new(recipe, s), made))
+                    })
                     .next();
                 let Some((key, made)) = best else {
                     if showing.made.is_none() && children.is_none() {
@@ -256,7 +265,7 @@ fn show(
 /// The steps in the object's own frame at which it is shown, the finest first: the one that gives the
 /// document's step in the world, and half of it, since a screen shows what a quick update need not.
 /// In powers of two, so that scaling makes few of them.
-pub(crate) fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> Vec<f32> {
+pub fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> Vec<f32> {
     let scale = object.placement.scale.abs().max_element();
     let halvings = scale.max(1e-3).log2().ceil().clamp(-4.0, 6.0);
     let step = document.step() * (-halvings).exp2();

@@ -16,8 +16,7 @@ use midair_document::ObjectId;
 use midair_field::Placement;
 
 pub use cue::{Cue, Cues, Tint};
-pub(crate) use follow::display_steps;
-pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, to_bevy_mesh};
+pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh};
 pub use form::form;
 pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};

@@ -15,6 +15,8 @@ pub struct Aim {
     pub draws: bool,
     /// Whether surfaces stop the hand.
     pub surfaces: bool,
+    /// The hand is held level, or as the surface under it lies, and not as the eye looks.
+    pub level: bool,
     /// Points that catch the hand, in world metres.
     pub points: Vec<Vec3>,
     /// Segments that catch it, after the points.
@@ -26,6 +28,7 @@ impl Default for Aim {
         Self {
             draws: false,
             surfaces: true,
+            level: false,
             points: Vec::new(),
             lines: Vec::new(),
         }
@@ -36,6 +39,17 @@ impl Default for Aim {
 pub const CATCH: f32 = 10.0;
 
 impl Aim {
+    /// How a hand is held that was turned by `turn` against the eye: as the eye looks, or level on
+    /// what has the normal `up`.
+    pub fn turned(&self, eye: Quat, up: Vec3, turn: Quat) -> Quat {
+        if self.level {
+            let up = Quat::from_rotation_arc(Vec3::Y, up.normalize_or(Vec3::Y));
+            (eye * turn * eye.inverse() * up).normalize()
+        } else {
+            (eye * turn).normalize()
+        }
+    }
+
     /// The target that catches what is seen at `at`, if any: the nearest point, or else the nearest
     /// place on a line. `seen` gives where a point of the world stands on the screen, in pixels.
     pub fn caught(&self, at: Vec2, seen: impl Fn(Vec3) -> Option<Vec2>) -> Option<Vec3> {

@@ -231,12 +231,9 @@ fn pull(
             let begins = Side::BOTH
                 .into_iter()
                 .find(|&s| hands.get(s).pressed(Action::Grab) && grips[s as usize]);
-            let empty = Side::BOTH
-                .iter()
-                .all(|&s| {
-                    !grips[s as usize]
-                        || touch.get(s).is_none() && !reserved.has(s, Action::Grab)
-                });
+            let empty = Side::BOTH.iter().all(|&s| {
+                !grips[s as usize] || touch.get(s).is_none() && !reserved.has(s, Action::Grab)
+            });
             let Some(side) = begins.filter(|_| empty && drafts.is_empty()) else {
                 return;
             };

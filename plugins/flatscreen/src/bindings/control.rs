@@ -119,6 +119,7 @@ controls! {
         SwapHands = "swap_hands" "Swap hands; what is held stays held",
         Turn = "turn" "Turn what is held (hold)",
         Stretch = "stretch" "Scale with both hands",
+        Erase = "erase" "Brush: paint or erase",
         SnapOff = "snap_off" "Hold snapping off (hold)",
         Delete = "delete" "Delete",
         Centre = "centre" "Middle of the pad: twice to delete, held to finish",

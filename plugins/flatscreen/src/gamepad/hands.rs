@@ -92,7 +92,13 @@ pub(crate) fn hands(
             let context = context.single().ok().filter(|_| aim.surfaces)?;
             pick::cast(&context, &proxies, ray.origin, ray.direction).map(|h| h.point)
         };
-        pad.roam(&controls, (camera, eye, orbit), (hand, view), dt, surface);
+        pad.roam(
+            (&controls, &aim),
+            (camera, eye, orbit),
+            (hand, view),
+            dt,
+            surface,
+        );
     }
     for other in Side::BOTH {
         let holds = pad.latched[other as usize] || pad.held[other as usize];
@@ -178,7 +184,7 @@ impl Pad {
     /// An empty hand moves over what it meets; where there is nothing it keeps its depth.
     fn roam(
         &mut self,
-        controls: &Controls,
+        (controls, aim): (&Controls, &Aim),
         (camera, eye, orbit): (&Camera, &Transform, &Orbit),
         (hand, view): (Vec2, Vec2),
         dt: f32,
@@ -214,7 +220,7 @@ impl Pad {
         }
         *pose = Pose {
             position: at,
-            rotation: (eye.rotation * self.turn).normalize(),
+            rotation: aim.turned(eye.rotation, Vec3::Y, self.turn),
         };
     }
 

@@ -1,7 +1,7 @@
 use glam::{Affine3A, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Family, HALF_SPACE_SLOPE};
+use super::kernel::{Edge, Family, HALF_SPACE_SLOPE};
 use super::paint::{Area, CHUNK, Chunk, GROUP, Inked, Inking, Painting, Segment};
 use super::stroke::{Canvas, Flat, Skeleton, Stroke, unnamed};
 use crate::recipe::transformed;
@@ -159,10 +159,13 @@ impl Painting {
                 };
                 let place = |c: &glam::Vec2| flat.origin + flat.x * c.x + flat.y * c.y;
                 let ends: Vec<Vec3> = flat.corners.iter().map(place).collect();
+                let corners_in: Vec<glam::Vec2> =
+                    flat.corners.iter().map(|c| c / support).collect();
                 inked.kind = Inking::Polygon(Box::new(Area {
+                    edges: Edge::all(&corners_in),
                     origin: flat.origin,
                     axes: [flat.x, flat.y, flat.normal],
-                    corners: flat.corners.iter().map(|c| c / support).collect(),
+                    corners: corners_in,
                     inverse: 1.0 / support,
                 }));
                 inked.slope = polygon;

@@ -1,7 +1,7 @@
 use glam::{Affine3A, IVec3, Vec2, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Family, HALF_SPACE_SLOPE, T, half_space, power};
+use super::kernel::{Edge, Family, HALF_SPACE_SLOPE, T, clearance, half_space, power};
 use super::stroke::HARD;
 use crate::Program;
 use crate::scratch::Scratch;
@@ -61,6 +61,7 @@ pub(super) struct Area {
     pub axes: [Vec3; 3],
     /// In supports.
     pub corners: Vec<Vec2>,
+    pub edges: Vec<Edge>,
     pub inverse: f32,
 }
 
@@ -313,10 +314,23 @@ impl Painting {
                 true
             }
             Inking::Polygon(area) => {
-                for (i, o) in out.iter_mut().enumerate() {
-                    let p = Vec3::new(points.x[i], points.y[i], points.z[i]);
-                    *o = stroke.weight * area.at(&self.family, p);
+                let (flat, height) = area.flat(points.centre);
+                let radius = points.radius * area.inverse;
+                let edge = clearance(&area.corners, flat);
+                if height.abs() - radius > 1.0 || edge + radius < -1.0 {
+                    return false;
                 }
+                if edge - radius > 1.0 {
+                    // No edge is felt: it is a plane without end.
+                    let [nx, ny, nz] = (area.axes[2] * area.inverse).to_array();
+                    let from = area.origin.dot(area.axes[2]) * area.inverse;
+                    for (i, o) in out.iter_mut().enumerate() {
+                        let h = points.x[i] * nx + points.y[i] * ny + points.z[i] * nz - from;
+                        *o = stroke.weight * self.family.at_plane(h);
+                    }
+                    return true;
+                }
+                polygon(&self.family, area, stroke.weight, points, out);
                 true
             }
             Inking::Field(program, radius) => {
@@ -501,9 +515,15 @@ impl Painting {
                     )
                 }
                 Inking::Field(program, radius) => {
-                    let steep = program.steepest(block.world, block.half)?;
-                    slope *= stroke.weight * HALF_SPACE_SLOPE / radius * steep;
                     let (low, high) = program.bounds_of(block.world, block.half);
+                    slope = if low >= *radius || high <= -radius {
+                        // Wholly outside or inside of where it falls off.
+                        0.0
+                    } else {
+                        let steep = program.steepest(block.world, block.half);
+                        let steep = steep.unwrap_or(f32::INFINITY);
+                        slope * stroke.weight * HALF_SPACE_SLOPE / radius * steep
+                    };
                     (half_space(high / radius), half_space(low / radius))
                 }
                 Inking::Canvas(painting) => {
@@ -523,8 +543,8 @@ impl Painting {
                 }
             };
             // Rounding, here and in the closed forms.
-            let low = stroke.weight * (low - 2.0e-5).max(0.0);
-            let high = stroke.weight * (high + 2.0e-5).max(0.0);
+            let low = stroke.weight * (low - 4.0e-5).max(0.0);
+            let high = stroke.weight * (high + 4.0e-5).max(0.0);
             felt.slope += slope;
             if stroke.erase {
                 (felt.low, felt.high) = (erased(felt.low, high), erased(felt.high, low));
@@ -566,7 +586,8 @@ impl Painting {
     /// that is not known.
     pub fn steepest(&self, block: &Block) -> Option<f32> {
         let felt = self.felt(block)?;
-        Some((felt.slope * felt.widest).max(1.0))
+        let steepest = (felt.slope * felt.widest).max(1.0);
+        steepest.is_finite().then_some(steepest)
     }
 }
 
@@ -595,9 +616,16 @@ impl Default for Felt {
 impl Area {
     #[inline(always)]
     fn at(&self, family: &Family, p: Vec3) -> f32 {
+        let (flat, height) = self.flat(p);
+        family.at_polygon(&self.edges, flat, height)
+    }
+
+    /// A place in the polygon's plane and above it, in supports.
+    #[inline(always)]
+    fn flat(&self, p: Vec3) -> (Vec2, f32) {
         let q = (p - self.origin) * self.inverse;
         let flat = Vec2::new(q.dot(self.axes[0]), q.dot(self.axes[1]));
-        family.at_polygon(&self.corners, flat, q.dot(self.axes[2]))
+        (flat, q.dot(self.axes[2]))
     }
 }
 
@@ -712,6 +740,7 @@ macro_rules! wide {
 wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
 wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
 wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
+wide!(polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
 wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
 
 #[inline(always)]
@@ -750,5 +779,33 @@ fn line_any(
     for (i, o) in out.iter_mut().enumerate() {
         let (d2, s0) = axis(from, along, inverse, p.x[i], p.y[i], p.z[i]);
         *o = weight * family.at_line(d2, s0, s0 + length * inverse);
+    }
+}
+
+#[inline(always)]
+fn polygon_any(family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]) {
+    let [x, y, z] = area.axes.map(|a| a * area.inverse);
+    let o = area.axes.map(|a| a.dot(area.origin) * area.inverse);
+    // A layer of nodes at a time, so that what is summed up stays at hand.
+    for from in (0..NODES).step_by(64) {
+        let (mut u, mut v, mut h2) = ([0.0f32; 64], [0.0f32; 64], [0.0f32; 64]);
+        for k in 0..64 {
+            let (px, py, pz) = (p.x[from + k], p.y[from + k], p.z[from + k]);
+            u[k] = px * x.x + py * x.y + pz * x.z - o[0];
+            v[k] = px * y.x + py * y.y + pz * y.z - o[1];
+            let h = px * z.x + py * z.y + pz * z.z - o[2];
+            h2[k] = h * h;
+        }
+        let (mut sum, mut angle) = ([0.0f32; 64], [0.0f32; 64]);
+        for edge in &area.edges {
+            for k in 0..64 {
+                let (s, t) = edge.at(u[k], v[k], h2[k]);
+                sum[k] += s;
+                angle[k] += t;
+            }
+        }
+        for k in 0..64 {
+            out[from + k] = weight * family.polygon_of(sum[k], angle[k], h2[k]);
+        }
     }
 }

@@ -5,13 +5,14 @@ use midair_mesh::Aabb;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::kernel::{Family, T};
+use super::kernel::{Edge, Family, T};
 use crate::recipe::transformed;
 use crate::{Node, Placement, Recipe};
 
-/// What a stroke is convolved from. Lengths in metres, in the stroke's own frame.
+/// What a stroke is convolved from. Lengths in metres, in the stroke's own frame. `R` is how a solid
+/// is held, by value everywhere but inside files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Skeleton {
+pub enum Skeleton<R = Recipe> {
     /// A point, or the way it was led: its potential is the greatest along the way, so that a hand
     /// that rests does not swell the stroke. x, y, z, and the factor on the stroke's radius there.
     Points(Arc<[Vec4]>),
@@ -22,14 +23,14 @@ pub enum Skeleton {
     Polygon(Arc<[Vec3]>),
     /// A solid. A painting keeps its own potential; anything else has that of the half-space along
     /// its surface, which falls off within the stroke's radius.
-    Volume(Recipe),
+    Volume(R),
 }
 
 /// One stroke of a canvas.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stroke {
+pub struct Stroke<R = Recipe> {
     /// What it is convolved from.
-    pub skeleton: Skeleton,
+    pub skeleton: Skeleton<R>,
     /// How far its surface lies from its skeleton, metres; for a volume, how far it melts.
     pub radius: f32,
     /// The factor on its potential, λ in 3DBrushVR Eq. 3.
@@ -113,6 +114,27 @@ impl Default for Canvas {
     }
 }
 
+impl<R> Stroke<R> {
+    /// The same stroke with its solid held in another way.
+    ///
+    /// # Errors
+    /// What `f` gives.
+    pub fn map<S, E>(&self, f: &mut impl FnMut(&R) -> Result<S, E>) -> Result<Stroke<S>, E> {
+        Ok(Stroke {
+            skeleton: match &self.skeleton {
+                Skeleton::Points(points) => Skeleton::Points(points.clone()),
+                Skeleton::Line(a, b) => Skeleton::Line(*a, *b),
+                Skeleton::Polygon(corners) => Skeleton::Polygon(corners.clone()),
+                Skeleton::Volume(solid) => Skeleton::Volume(f(solid)?),
+            },
+            radius: self.radius,
+            weight: self.weight,
+            erase: self.erase,
+            placement: self.placement,
+        })
+    }
+}
+
 impl Stroke {
     /// A stroke of weight 1 that stands where its skeleton does.
     pub fn new(skeleton: Skeleton, radius: f32) -> Self {
@@ -144,7 +166,7 @@ impl Stroke {
                 Some(flat) => {
                     let corners: Vec<Vec2> = flat.corners.iter().map(|c| c / support).collect();
                     let mean = corners.iter().sum::<Vec2>() / corners.len() as f32;
-                    family.at_polygon(&corners, mean, 1.0 / reach)
+                    family.at_polygon(&Edge::all(&corners), mean, 1.0 / reach)
                 }
                 None => T,
             },

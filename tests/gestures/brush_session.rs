@@ -1,0 +1,154 @@
+//! A figure of two parts, painted by mouse alone and by gamepad alone, recorded and played back.
+
+use std::path::Path;
+
+use bevy::input::gamepad::GamepadButton as Button;
+use bevy::prelude::*;
+use midair::{Stage, probe};
+use midair_brush::{BRUSH, canvas};
+use midair_mesh::check;
+use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
+use midair_studio::command::Command;
+use midair_studio::project::{Begin, Places};
+use midair_studio::settings::Settings;
+
+use crate::desk::Desk;
+use crate::pad_session::saved;
+
+impl Desk {
+    /// As the mode's button on the bar asks.
+    fn take_brush(&mut self) {
+        self.app.world_mut().write_message(Command::Mode(BRUSH));
+        self.wait(3);
+    }
+
+    fn strokes(&self) -> usize {
+        let (_, object) = self.document().objects().next().expect("a painting");
+        canvas(object).expect("a painting").strokes.len()
+    }
+}
+
+fn recorded(path: &Path, title: &str) -> Desk {
+    let recorder = RecorderPlugin::create(path, title).unwrap();
+    Desk::with(move |app| {
+        app.add_plugins(recorder);
+    })
+}
+
+/// The file that was saved has no fault, and the recording makes the same.
+fn plays_back(desk: Desk, recording: &Path, pieces: usize) {
+    assert_eq!(desk.warnings(), [] as [String; 0]);
+    let Desk { app, home, .. } = desk;
+    // The recording ends with the app.
+    drop(app);
+    let mesh = saved(home.path());
+    let report = check(&midair_mesh::read(&mesh).unwrap().mesh);
+    assert!(report.is_faultless(), "{:?}", report.faults());
+    assert_eq!(report.pieces, pieces);
+    let again = tempfile::tempdir().unwrap();
+    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
+    player.add_plugins(PlayerPlugin);
+    let options = PlayOptions {
+        probe,
+        ..PlayOptions::default()
+    };
+    let report = play(&mut player, Session::load(recording).unwrap(), options).unwrap();
+    assert_eq!(report.objects.len(), 1);
+    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
+    assert!(a == b, "the same bytes");
+}
+
+#[test]
+fn a_figure_by_mouse_alone_plays_back_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("figure.ron");
+    let mut desk = recorded(&recording, "A figure, by mouse");
+    desk.take_brush();
+    let radius = |d: &Desk| d.world().resource::<Settings>().brush.radius;
+    let before = radius(&desk);
+    // A body led along the ground, a head beside its end.
+    let (from, to) = (Vec3::new(0.0, 0.0, 0.2), Vec3::new(0.3, 0.0, 0.0));
+    let [a, b] = [from, to].map(|p| desk.pixel(p));
+    desk.drag(MouseButton::Left, a, b);
+    desk.settle();
+    assert_eq!(desk.strokes(), 1);
+    desk.strike_one(KeyCode::ArrowUp);
+    assert!(radius(&desk) > before);
+    let head = desk.pixel(Vec3::new(0.33, 0.0, -0.02));
+    desk.glide(head);
+    desk.click();
+    desk.settle();
+    assert_eq!(desk.strokes(), 2);
+    let on = desk.pixel(Vec3::new(0.15, 0.02, 0.1));
+    desk.glide(on);
+    desk.wait(2);
+    desk.strike_one(KeyCode::KeyE);
+    desk.settle();
+    plays_back(desk, &recording, 1);
+}
+
+#[test]
+fn the_wheel_with_ctrl_sizes_the_brush_and_x_erases() {
+    use bevy::input::mouse::{MouseScrollUnit, MouseWheel};
+    let mut desk = Desk::new();
+    desk.take_brush();
+    let brush = |d: &Desk| d.world().resource::<Settings>().brush.clone();
+    let before = brush(&desk).radius;
+    let at = desk.pixel(Vec3::ZERO);
+    desk.glide(at);
+    desk.hold(KeyCode::ControlLeft, true);
+    desk.wait(2);
+    let window = desk
+        .app
+        .world_mut()
+        .query_filtered::<Entity, With<bevy::window::PrimaryWindow>>()
+        .single(desk.app.world())
+        .unwrap();
+    desk.app.world_mut().write_message(MouseWheel {
+        unit: MouseScrollUnit::Line,
+        x: 0.0,
+        y: 3.0,
+        window,
+        phase: bevy::input::touch::TouchPhase::Moved,
+    });
+    desk.wait(12);
+    desk.hold(KeyCode::ControlLeft, false);
+    desk.wait(2);
+    let grown = brush(&desk).radius / before;
+    assert!(
+        (1.3..1.5).contains(&grown),
+        "three lines, three presses: {grown}"
+    );
+    desk.strike_one(KeyCode::KeyX);
+    assert!(brush(&desk).erase);
+    desk.strike_one(KeyCode::KeyX);
+    assert!(!brush(&desk).erase);
+}
+
+#[test]
+fn a_figure_by_gamepad_alone_plays_back_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("figure.ron");
+    let mut desk = recorded(&recording, "A figure, by gamepad");
+    desk.plug();
+    desk.take_brush();
+    // A line from end to end, dragged.
+    desk.tap(Button::DPadRight);
+    desk.aim(Vec3::new(-0.1, 0.2, 0.0));
+    desk.down(Button::RightTrigger2);
+    desk.aim(Vec3::new(0.2, 0.3, 0.0));
+    desk.up(Button::RightTrigger2);
+    desk.settle();
+    assert_eq!(desk.strokes(), 1);
+    // A head.
+    desk.tap(Button::DPadLeft);
+    desk.tap(Button::DPadUp);
+    desk.aim(Vec3::new(0.22, 0.32, 0.0));
+    desk.tap(Button::RightTrigger2);
+    desk.settle();
+    assert_eq!(desk.strokes(), 2);
+    desk.point(Vec3::new(0.05, 0.26, 0.0));
+    desk.tap(Button::Select);
+    desk.settle();
+    plays_back(desk, &recording, 1);
+}
