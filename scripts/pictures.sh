@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Takes the pictures of docs/pictures: what sessions make, and the window with its panels, under a virtual display.
-# `scripts/pictures.sh 2560x1440 FOLDER` takes them in another size and puts them elsewhere.
+# Takes pictures: what sessions make, and the window with its panels, under a virtual display.
+#   scripts/pictures.sh                          those of docs/pictures
+#   scripts/pictures.sh 2560x1440 FOLDER [NAME]  the window in that size, in the dark and in the light room; all, or NAME
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/setup.sh
-need xvfb xauth
-size=${1:-1280x720} to=${2:-docs/pictures}
+need xvfb xauth xdotool pngquant
+size=${1:-1280x720} to=${2:-docs/pictures} only=${3:-}
 scale=1
-[ "${size%x*}" -lt 2000 ] || scale=2
+[ "${size%x*}" -lt 2000 ] || scale=1.6
 midair=$CARGO_TARGET_DIR/debug/midair
 home=$(mktemp -d)
 export MIDAIR_HOME=$home/midair XDG_RUNTIME_DIR=$home
@@ -15,13 +16,12 @@ xvfb=""
 trap '[ -z "$xvfb" ] || kill "$xvfb" 2>/dev/null; rm -rf "$home"' EXIT
 mkdir -p "$to"
 
-if [ "$to" = docs/pictures ]; then
-  for name in chair cup; do
-    "$midair" play "assets/sessions/$name.ron" --shot "$to/$name.png"
-  done
-fi
+# Fewer colours, a third of the size: nobody sees the difference in a page.
+smaller() { pngquant --force --skip-if-larger --quality 75-98 --speed 1 --output "$1" "$1" || true; }
+
 # Nothing is fused in it: many things to list, to select and to mark.
 "$midair" play scripts/pictures.ron --save "$home/still.midair"
+"$midair" play assets/sessions/chair.ron --save "$home/chair.midair"
 
 Xvfb -displayfd 3 -screen 0 "${size}x24" 3>"$home/display" >/dev/null 2>&1 &
 xvfb=$!
@@ -29,6 +29,8 @@ until [ -s "$home/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$home/display")
 export DISPLAY
 unset WAYLAND_DISPLAY
+# Where it points at nothing.
+xdotool mousemove $((${size%x*} - 8)) 8
 
 # window NAME ROOM FILE ASK... : one picture of the window after what is asked for
 window() {
@@ -43,14 +45,38 @@ window() {
   } >"$home/$name.ron"
   rm -rf "$MIDAIR_HOME"
   "$midair" ${file:+"$file"} --shot "$to/$name.png" --size "$size" --play "$home/$name.ron"
+  smaller "$to/$name.png"
 }
 open() { printf 'Panel(id: "%s", open: true)' "$1"; }
+shut() { printf 'Panel(id: "%s", open: false)' "$1"; }
+lesson() { printf 'Set(key: "help.tutorial", value: "(state: Going, step: %s)")' "$1"; }
 select='Objects(Select(ids: [1, 3]))'
 still=$home/still.midair
 
-window empty Dusk "" "$(open library)"
-window assemble Dusk "$still" "$(open library)" "$(open properties)" "$select"
-window assemble-day Day "$still" "$(open library)" "$(open outline)" "$select"
-window assemble-paper Paper "$still" "$(open properties)" "$select"
-window export Dusk "$still" "$(open export)"
-window controls Day "$still" "$(open controls)"
+# picture NAME ROOM : what can be seen of the app, one by one
+picture() {
+  case $1 in
+    empty) window "$1-$2" "$2" "" "$(open tutorial)" ;;
+    library) window "$1-$2" "$2" "" "$(open library)" "$(shut tutorial)" ;;
+    operands) window "$1-$2" "$2" "$still" "$(shut tutorial)" "$(open library)" "$(open operands)" ;;
+    outline) window "$1-$2" "$2" "$still" "$(shut tutorial)" "$(open outline)" "$(open properties)" "$select" ;;
+    export) window "$1-$2" "$2" "$home/chair.midair" "$(shut tutorial)" "$(open export)" ;;
+    tutorial) window "$1-$2" "$2" "" "$(open library)" "$(open tutorial)" "$(lesson 1)" ;;
+    settings) window "$1-$2" "$2" "$home/chair.midair" "$(shut tutorial)" "$(open settings)" ;;
+    *) echo "there is no picture called $1" >&2; exit 2 ;;
+  esac
+}
+
+if [ "$to" = docs/pictures ]; then
+  for name in chair cup; do
+    "$midair" play "assets/sessions/$name.ron" --shot "$to/$name.png"
+    smaller "$to/$name.png"
+  done
+  for of in operands-Dusk outline-Day tutorial-Dusk export-Paper; do
+    picture "${of%-*}" "${of#*-}"
+  done
+else
+  for name in ${only:-empty library operands outline export tutorial settings}; do
+    for room in ${ROOMS:-Dusk Day}; do picture "$name" "$room"; done
+  done
+fi

@@ -3,6 +3,7 @@
 mod again;
 pub mod cli;
 mod device;
+mod drawn;
 mod rehearse;
 mod report;
 mod shot;

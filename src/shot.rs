@@ -16,7 +16,7 @@ use midair_studio::command::Command;
 use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::objects::extent;
 use midair_studio::project::Project;
-use midair_studio::show::{Eye, camera, headset};
+use midair_studio::show::{Eye, Unhurried, camera, headset};
 
 /// How long a picture may take: a software renderer compiles its shaders first.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -214,11 +214,14 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
     let mut asks = asks.into_iter();
     let mut frame = 0;
     let mut settled = 0;
+    app.insert_resource(Unhurried);
     app.init_resource::<Taken>().add_systems(
         // Before the end of the frame, where a clean end is seen.
         PostUpdate,
         move |evaluations: Res<Evaluations>,
+              preview: Res<Preview>,
               mut taken: ResMut<Taken>,
+              mut cameras: Query<&mut Camera, With<Eye>>,
               mut ask: MessageWriter<Command>,
               mut commands: Commands,
               mut exit: MessageWriter<AppExit>| {
@@ -238,11 +241,18 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
             settled = if let Some(next) = next {
                 ask.write(next);
                 0
-            } else if asks.len() == 0 && evaluations.outstanding() == 0 {
+            } else if asks.len() == 0 && evaluations.outstanding() == 0 && !preview.is_busy() {
                 settled + 1
             } else {
                 0
             };
+            // The room is drawn for the last frames alone: nobody sees the others.
+            let drawn = settled >= 12;
+            for mut camera in &mut cameras {
+                if camera.is_active != drawn {
+                    camera.is_active = drawn;
+                }
+            }
             if settled == 20 {
                 commands.spawn(Screenshot::primary_window()).observe(
                     |shot: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| {

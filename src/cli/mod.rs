@@ -95,6 +95,9 @@ pub struct Play {
     /// comes of it then depends on the machine
     #[arg(long)]
     paced: bool,
+    /// Draw every frame, small, and report what that costs: extraction, and the render world's processor time
+    #[arg(long, requires = "report")]
+    drawn: bool,
     /// Start from this document instead of an empty one
     #[arg(long, value_name = "FILE")]
     open: Option<PathBuf>,

@@ -3,6 +3,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::{Context, Result};
+use bevy::render::renderer::RenderDevice;
 use midair_document::{may_save, save};
 use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
 use midair_solid::{ExportOptions, export, may_export};
@@ -10,7 +11,7 @@ use midair_studio::evaluate::Evaluations;
 use midair_studio::project::{Begin, Places, Project};
 
 use super::{Play, open};
-use crate::{Stage, app, probe, shot, wear};
+use crate::{Stage, app, drawn, probe, shot, wear};
 
 pub(super) fn run(args: Play) -> Result<()> {
     let session = Session::load(&args.session)?;
@@ -31,7 +32,7 @@ pub(super) fn run(args: Play) -> Result<()> {
         }
         None => None,
     };
-    let stage = if args.shot.is_some() {
+    let stage = if args.shot.is_some() || args.drawn {
         Stage::Picture
     } else {
         Stage::Bare
@@ -55,7 +56,15 @@ pub(super) fn run(args: Play) -> Result<()> {
         probe,
         ..PlayOptions::default()
     };
-    let report = play(&mut app, session, options)?;
+    let costs = args.drawn.then(|| drawn::draw_every_frame(&mut app));
+    let mut report = play(&mut app, session, options)?;
+    report.drawn = costs.map(|c| c.report());
+    if args.drawn && app.world().get_resource::<RenderDevice>().is_none() {
+        eprintln!(
+            "midair: nothing was drawn: no graphics driver was found. Install Mesa's software one \
+             (mesa-vulkan-drivers), or play without --drawn"
+        );
+    }
     for warning in &report.warnings {
         eprintln!("midair: {warning}");
     }

@@ -76,6 +76,10 @@ impl Desk {
         self.app.world()
     }
 
+    pub fn window_entity(&self) -> Entity {
+        self.window
+    }
+
     pub fn document(&self) -> &Document {
         self.world().resource::<Project>().document()
     }
@@ -146,6 +150,7 @@ impl Desk {
             product_id: None,
         };
         self.connection(connected);
+        self.open_eyes();
     }
 
     pub fn unplug(&mut self) {

@@ -26,9 +26,8 @@ impl Desk {
         }
     }
 
-    /// Takes a component out of the library, by its name: it is at the leading hand then.
-    pub fn take(&mut self, name: &str) -> ObjectId {
-        let before = self.document().len();
+    /// Into the library, by the way that is shortest.
+    fn enter_library(&mut self) {
         if !self.is_open("library") {
             self.tap(Button::Start);
         } else if !self.focus().is_inside() {
@@ -36,44 +35,79 @@ impl Desk {
         }
         self.wait(3);
         assert!(self.focus().is_inside(), "in the library");
-        if !self.focus().label().contains(name) {
-            for _ in 0..60 {
-                if self.focus().is_text() {
-                    break;
-                }
-                self.tap(Button::DPadUp);
-            }
-            assert!(self.focus().is_text(), "on the search field");
-            self.tap(Button::South);
-            assert!(self.world().resource::<Typing>().open, "the keyboard is up");
-            for _ in 0..24 {
-                self.tap(Button::West);
-            }
-            let word = name.to_lowercase();
-            self.type_text(&word);
-            self.tap(Button::Start);
-            self.wait(3);
-        }
-        let mut steps = [Button::DPadDown, Button::DPadRight, Button::DPadLeft]
-            .into_iter()
-            .cycle();
-        for _ in 0..24 {
-            if self.focus().label().contains(name) {
+    }
+
+    /// Takes a component out of the library, by its name: it is at the leading hand then.
+    pub fn take(&mut self, name: &str) -> ObjectId {
+        let before = self.document().len();
+        self.enter_library();
+        // RB turns from category to category.
+        for _ in 0..8 {
+            if self.button_called(name).is_some() {
                 break;
             }
-            // Down a row, across it and back.
-            let step = steps.next().unwrap();
-            self.tap(step);
+            self.tap(Button::RightTrigger);
+            self.wait(3);
         }
-        assert!(
-            self.focus().label().contains(name),
-            "{}",
-            self.focus().label()
-        );
+        self.walk_to(name);
+        self.tap(Button::South);
+        self.settle();
+        assert_eq!(self.document().len(), before + 1, "{:?}", self.warnings());
+        let (id, object) = self.document().objects().next_back().unwrap();
+        assert_eq!(object.name, name);
+        id
+    }
+
+    /// The same by typing its name on the keyboard on the screen.
+    fn take_by_typing(&mut self, name: &str) -> ObjectId {
+        let before = self.document().len();
+        self.enter_library();
+        for _ in 0..60 {
+            if self.focus().is_text() {
+                break;
+            }
+            self.tap(Button::DPadUp);
+        }
+        assert!(self.focus().is_text(), "on the search field");
+        self.tap(Button::South);
+        assert!(self.world().resource::<Typing>().open, "the keyboard is up");
+        let word = name.to_lowercase();
+        self.type_text(&word);
+        self.tap(Button::Start);
+        self.wait(3);
+        self.walk_to(name);
         self.tap(Button::South);
         self.settle();
         assert_eq!(self.document().len(), before + 1, "{:?}", self.warnings());
         self.document().objects().next_back().unwrap().0
+    }
+
+    /// The D-pad to what is called so on the screen.
+    pub fn walk_to(&mut self, name: &str) {
+        self.wait(3);
+        assert!(self.focus().is_inside(), "in a panel, for {name}");
+        for _ in 0..40 {
+            let seen = self.button_called(name);
+            let seen = seen.unwrap_or_else(|| panic!("there is no \"{name}\" on the screen"));
+            let goal = seen.rect;
+            let at = self.focus().spot().expect("somewhere").rect;
+            if at.intersect(goal).is_positive()
+                && at.intersect(goal).area() > 0.5 * goal.area().min(at.area())
+            {
+                return;
+            }
+            let by = goal.center() - at.center();
+            let apart = 0.6 * goal.height().min(at.height());
+            let button = match (by.x > 0.0, by.y > 0.0) {
+                (_, true) if by.y > apart => Button::DPadDown,
+                (_, false) if -by.y > apart => Button::DPadUp,
+                (true, _) => Button::DPadRight,
+                (false, _) => Button::DPadLeft,
+            };
+            self.tap(button);
+            self.wait(2);
+        }
+        panic!("the D-pad does not lead to {name}");
     }
 
     /// Moves the leading hand to a point of the world with the sticks, as one does who looks.
@@ -195,7 +229,10 @@ fn start_opens_the_library_and_the_focus_is_in_it() {
 fn a_component_is_found_by_typing_and_carried() {
     let mut desk = Desk::new();
     desk.plug();
-    let id = desk.take("Cube");
+    let first = desk.take_by_typing("Sphere");
+    // What is typed the next time takes the place of it.
+    let id = desk.take_by_typing("Cube");
+    assert_ne!(first, id);
     let at = desk.document().object(id).unwrap().placement.translation;
     let hand = desk.hand(Side::Right);
     assert!(hand.distance(at) < 1e-4, "the hand is at it: {hand} {at}");

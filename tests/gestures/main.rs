@@ -14,6 +14,7 @@ mod leaving;
 mod looks;
 mod mouse;
 mod mouse_session;
+mod newcomer;
 mod objects;
 mod operands;
 mod oracle;

@@ -284,6 +284,7 @@ fn a_drawing_is_saved_opened_and_exported_as_it_is() {
             path: home.join(name),
             step: None,
             unit: None,
+            up: None,
             only: None,
         });
         s.settle();

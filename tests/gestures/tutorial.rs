@@ -125,9 +125,9 @@ impl Studio {
             "clear-chair" => self.delete_at(Vec3::new(0.0, 0.42, 0.05)),
             "body" => self.pick("solid/cylinder", Vec3::new(0.0, 0.4, 0.0)),
             "ring" => self.pick("solid/torus", Vec3::new(0.6, 0.4, 0.0)),
-            "handle" => self.handle(),
+            "upright" => self.handle(),
             "second" => self.pick("solid/cylinder", Vec3::new(-0.6, 0.4, 0.0)),
-            "hollow" => self.narrow(),
+            "narrow" => self.narrow(),
             "mark-cup" => {
                 self.operate();
                 self.mark(Vec3::new(0.0, 0.22, 0.0), Action::Up);
@@ -140,7 +140,8 @@ impl Studio {
             }
             other => panic!("nobody knows how to do {other}"),
         }
-        self.frames(2);
+        // What was done along with it is passed over, one step a frame.
+        self.frames(5);
     }
 
     /// The torus is turned upright by the right hand, made smaller by both and carried to the body.
@@ -189,13 +190,11 @@ fn whoever_does_what_the_tutorial_says_makes_the_three_models() {
     let mut studio = Studio::new();
     studio.begin_tutorial();
     let steps = studio.world().resource::<Tutorial>().len();
-    for step in 0..steps {
-        let name = studio.step_name();
-        assert_eq!(studio.progress().step, step, "{name}");
+    while studio.progress().state == Lesson::Going {
+        let (name, step) = (studio.step_name(), studio.progress().step);
         studio.obey(&name);
-        assert_eq!(
-            studio.progress().step,
-            step + 1,
+        assert!(
+            studio.progress().step > step,
             "{name} is done: {:?}",
             studio.warnings()
         );

@@ -1,5 +1,6 @@
 //! What a runtime, a headset and controllers can do to somebody at work.
 
+use serde_json::json;
 use std::fs;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
@@ -181,20 +182,19 @@ pub fn alone(folder: &Path) -> Result<()> {
     performer.rig.hands[1].stick.x = -1.0;
     performer.rig.send()?;
     app.until("menu and left is undo", 10.0, |now| {
-        now["hands"][1]["down"].to_string() == "[\"Undo\"]"
+        now["hands"][1]["down"] == json!(["Undo"])
     })?;
     performer.rig.hands[1].stick.x = 0.0;
     performer.rig.hands[1].trigger = 1.0;
     performer.rig.send()?;
     app.until("menu and trigger is the other hand's", 10.0, |now| {
-        now["hands"][0]["down"].to_string() == "[\"Act\"]"
-            && now["hands"][1]["down"].to_string() == "[]"
+        now["hands"][0]["down"] == json!(["Act"]) && now["hands"][1]["down"] == json!([])
     })?;
     let right = &mut performer.rig.hands[1];
     (right.trigger, right.b) = (0.0, false);
     performer.rig.send()?;
     app.until("it was no press of the menu", 10.0, |now| {
-        now["hands"][0]["down"].to_string() == "[]" && now["hands"][1]["down"].to_string() == "[]"
+        now["hands"][0]["down"] == json!([]) && now["hands"][1]["down"] == json!([])
     })?;
     if app.now["panels"].to_string().contains("\"library\"") {
         bail!("the library was opened");
@@ -232,7 +232,7 @@ pub fn attention(folder: &Path) -> Result<()> {
         now["life"] == "Shown" || now["life"] == "Asleep"
     })?;
     app.until("nothing is held", 10.0, |now| {
-        now["hands"][1]["down"].to_string() == "[]" && now["dragging"] == false
+        now["hands"][1]["down"] == json!([]) && now["dragging"] == false
     })?;
     drop(other);
     take_focus("Midair")?;

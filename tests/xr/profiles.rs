@@ -1,5 +1,6 @@
 //! Every controller's table, and every action of those that the runtime can be.
 
+use serde_json::json;
 use std::fs;
 use std::path::Path;
 
@@ -109,7 +110,7 @@ pub fn touch(folder: &Path) -> Result<()> {
     performer.rig.send()?;
     if app
         .until("the left menu saves", 3.0, |now| {
-            now["hands"][0]["down"].to_string() == "[\"Save\"]"
+            now["hands"][0]["down"] == json!(["Save"])
         })
         .is_err()
     {
@@ -196,12 +197,12 @@ fn arrives(
     press(&mut performer.rig.hands[side as usize]);
     performer.rig.send()?;
     app.until(&format!("{side:?} {action:?}"), 5.0, |now| {
-        now["hands"][side as usize]["down"].to_string() == format!("[\"{action:?}\"]")
+        now["hands"][side as usize]["down"] == json!([format!("{action:?}")])
     })?;
     performer.rig.hands[side as usize] = rest;
     performer.rig.send()?;
     app.until(&format!("{side:?} {action:?} is let go"), 5.0, |now| {
-        now["hands"][side as usize]["down"].to_string() == "[]"
+        now["hands"][side as usize]["down"] == json!([])
     })?;
     Ok(())
 }

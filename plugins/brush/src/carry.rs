@@ -24,7 +24,13 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
         return;
     }
     for (_, object) in objects {
-        let recipe = object.operand();
+        let Some(recipe) = object.operand() else {
+            studio.notices.warn(format!(
+                "{} is not closed, so it is no volume to paint with. Close it first.",
+                object.name
+            ));
+            continue;
+        };
         let frame = stroke::Frame::of(&midair_field::Placement::IDENTITY);
         let fits = stroke::volume(
             (object.name.as_str(), &recipe),

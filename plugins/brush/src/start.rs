@@ -29,7 +29,13 @@ pub(crate) fn paint_on(studio: &mut Studio, id: ObjectId) -> bool {
         return false;
     }
     if canvas(object).is_none() {
-        let recipe = object.operand();
+        let Some(recipe) = object.operand() else {
+            studio.notices.warn(format!(
+                "{} is not closed, so it cannot be painted on. Close it first.",
+                object.name
+            ));
+            return false;
+        };
         let brush = studio.brush();
         let frame = stroke::Frame::of(&Placement::IDENTITY);
         let made = stroke::volume(

@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use midair_studio::{
     hands::Action,
+    project::Project,
     tools::{HintKey, Hints},
 };
 
@@ -76,6 +77,10 @@ pub(crate) fn with_keys(
             (named(Control::SwapHands), "other hand"),
         ]
     } else if pointer.is_over() {
+        // The keys do at once what the cross does in two steps.
+        hints
+            .buttons
+            .retain(|h| h.action != HintKey::Action(Action::Up) || h.does != "mark operands");
         vec![
             (
                 joined(&[
@@ -97,7 +102,23 @@ pub(crate) fn with_keys(
         ]
     };
     let more = more.into_iter().map(|(key, does)| (key, does.to_owned()));
-    (hints, more.collect())
+    let mut more: Vec<_> = more.collect();
+    // What ends what one is at comes first; then what the thing under the pointer is marked by.
+    let empty = world.resource::<Project>().document().is_empty();
+    hints.buttons.sort_by_key(|h| match h.action {
+        HintKey::Action(Action::Finish) => 0,
+        HintKey::Action(Action::Library) if empty => 1,
+        _ => 2,
+    });
+    if empty {
+        // There is nothing to mark yet.
+        hints.buttons.retain(|h| h.does != "mark operands");
+    }
+    let help = named(Control::Help);
+    if !in_panels && !help.is_empty() {
+        more.push((help, "all keys".to_owned()));
+    }
+    (hints, more)
 }
 
 /// What moves the focus.

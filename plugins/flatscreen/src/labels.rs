@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use midair_studio::{
     hands::{Action, Hands, Side},
-    panel::Palette,
+    panel::{ACCENT, Palette},
     project::{Project, Shelf},
     show::{Cues, ObjectMap, Readouts},
 };
@@ -114,13 +114,23 @@ pub(crate) fn empty(
     Ok(())
 }
 
-/// A small ball at each hand; what lies below it is the studio's to show.
+/// A dot at each hand; what lies below it is the studio's to show.
 pub(crate) fn hands(
-    mut gizmos: Gizmos,
+    mut contexts: EguiContexts,
     hands: Res<Hands>,
     (pointer, pad): (Res<Pointer>, Res<Pad>),
-    eye: Single<&Transform, With<Orbit>>,
-) {
+    camera: Single<(&Camera, &Transform), With<Orbit>>,
+    screen: Res<Screen>,
+) -> Result {
+    let ctx = contexts.ctx_mut()?;
+    let Some(view) = screen.view() else {
+        return Ok(());
+    };
+    let (camera, eye) = camera.into_inner();
+    let eye = GlobalTransform::from(*eye);
+    let painter = ctx
+        .layer_painter(egui::LayerId::background())
+        .with_clip_rect(view);
     for side in Side::BOTH {
         let (leading, latched) = if pad.leads() {
             (pad.leading(), pad.is_latched(side))
@@ -132,14 +142,26 @@ pub(crate) fn hands(
             continue;
         }
         let tip = hands.get(side).pose.position;
-        let colour = if leads {
-            Color::srgb(0.62, 0.54, 0.95)
-        } else {
-            Color::srgb(0.75, 0.75, 0.80)
+        let Ok(at) = camera.world_to_viewport(&eye, tip) else {
+            continue;
         };
-        // The same size on screen wherever it is.
-        gizmos.sphere(tip, 0.003 * tip.distance(eye.translation), colour);
+        // A gamepad has no pointer of its own: its hand is easier to find.
+        let radius = if pad.leads() { 6.0 } else { 3.5 };
+        let fill = if leads {
+            ACCENT
+        } else {
+            egui::Color32::from_gray(0xc8)
+        };
+        let at = screen.point(at);
+        painter.circle_filled(at, radius + 1.5, egui::Color32::from_black_alpha(110));
+        painter.circle(
+            at,
+            radius,
+            fill,
+            egui::Stroke::new(1.0, egui::Color32::WHITE),
+        );
     }
+    Ok(())
 }
 
 /// Lengths, angles and scales beside what they are about.
@@ -170,7 +192,8 @@ pub(crate) fn readouts(
             palette.text,
         );
         let size = galley.size() + egui::vec2(12.0, 6.0);
-        let mut rect = egui::Rect::from_center_size(egui::pos2(at.x, at.y + 24.0), size);
+        let below = screen.point(at) + egui::vec2(0.0, 24.0);
+        let mut rect = egui::Rect::from_center_size(below, size);
         // One below the other where they would lie upon each other.
         while let Some(other) = taken.iter().find(|r| r.intersects(rect)) {
             rect = rect.translate(egui::vec2(0.0, other.bottom() - rect.top() + 2.0));

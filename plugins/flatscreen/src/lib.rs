@@ -45,17 +45,6 @@ impl Plugin for FlatscreenPlugin {
         app.add_plugins(EguiPlugin::default())
             .init_resource::<Pointer>()
             .init_resource::<Gizmo>()
-            .insert_gizmo_config(
-                gizmo::Overlay,
-                GizmoConfig {
-                    depth_bias: -1.0,
-                    line: GizmoLineConfig {
-                        width: 3.0,
-                        ..default()
-                    },
-                    ..default()
-                },
-            )
             .init_resource::<Pad>()
             .init_resource::<focus::Typing>()
             .init_resource::<ring::Ring>()
@@ -99,8 +88,6 @@ impl Plugin for FlatscreenPlugin {
                 (
                     gamepad::rumble,
                     view::jump,
-                    gizmo::draw,
-                    labels::hands,
                     names::tell,
                     panels::title,
                     panels::drop,
@@ -117,6 +104,8 @@ impl Plugin for FlatscreenPlugin {
                     ring::show,
                     labels::objects,
                     labels::empty,
+                    gizmo::draw,
+                    labels::hands,
                     labels::readouts,
                     band::show,
                 )

@@ -81,6 +81,9 @@ impl Screen {
 const NARROW: f32 = 420.0;
 const LOW: f32 = 240.0;
 
+/// Points of one line of hints.
+const HINTS: f32 = 36.0;
+
 pub(crate) fn style(
     mut contexts: EguiContexts,
     settings: Res<Settings>,
@@ -144,6 +147,10 @@ pub(crate) fn show(world: &mut World, contexts: &mut SystemState<EguiContexts<'s
                 }
             }
             other => {
+                // The lesson begins: what it says is done outside of panels.
+                if matches!(&other, Command::Set { key, .. } if key == "help.tutorial") {
+                    world.resource_mut::<Focus>().leave();
+                }
                 world.write_message(other);
             }
         }
@@ -205,7 +212,11 @@ fn draw(
     });
     map.end("bar", false);
     if window.y >= LOW {
-        egui::Panel::bottom("hints").show(&mut root, |ui| {
+        // Of one height: the view does not jump as hints come and go.
+        let marks = !world.resource::<Project>().document().pending().is_empty();
+        let high = if marks { 2.0 * HINTS } else { HINTS };
+        let hints = egui::Panel::bottom("hints").exact_size(high + 8.0);
+        hints.show(&mut root, |ui| {
             ui.add_space(4.0);
             panel::operands(ui, world.resource::<Project>().document());
             let (bindings, device) = (world.resource(), world.resource::<Controls>().device());
@@ -242,25 +253,28 @@ fn draw(
             .max_height((view.height() - 64.0).max(32.0))
             .show(ctx, |ui| fill(ui, &info, world, panels, asks));
         if let Some(shown) = shown {
-            map.layer(info.id, shown.response.layer_id);
+            map.corner(info.id, shown.response.layer_id);
         }
     }
     for info in open_in(panels, Dock::Window) {
-        let mut open = true;
+        let room = (view.height() - 96.0).max(64.0);
         let shown = egui::Window::new(format!("{}  {}", info.icon, info.title))
             .id(egui::Id::new(info.id))
-            .open(&mut open)
-            .collapsible(false)
+            .title_bar(false)
+            .resizable(false)
             .constrain_to(view)
             .default_pos(view.center())
             .pivot(egui::Align2::CENTER_CENTER)
-            .vscroll(true)
-            .show(ctx, |ui| fill(ui, &info, world, panels, asks));
+            .show(ctx, |ui| {
+                heading(ui, &info, asks);
+                ui.add_space(4.0);
+                // As tall as what it shows, where there is room for that.
+                egui::ScrollArea::vertical()
+                    .max_height(room)
+                    .show(ui, |ui| fill(ui, &info, world, panels, asks));
+            });
         if let Some(shown) = shown {
             map.layer(info.id, shown.response.layer_id);
-        }
-        if !open {
-            asks.push(close(&info));
         }
     }
     for info in open_in(panels, Dock::Modal) {
@@ -292,6 +306,18 @@ fn close(info: &PanelInfo) -> Command {
     }
 }
 
+/// What a panel is for, and what closes it.
+fn heading(ui: &mut egui::Ui, info: &PanelInfo, asks: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.heading(format!("{}  {}", info.icon, info.title));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if panel::kit::icon_button(ui, panel::icon::X, "Close", false).clicked() {
+                asks.push(close(info));
+            }
+        });
+    });
+}
+
 /// The panels of one side, one above the other.
 fn column(
     root: &mut egui::Ui,
@@ -311,15 +337,9 @@ fn column(
                 if i > 0 {
                     ui.separator();
                 }
+                ui.set_opacity(panel::kit::appeared(ui, egui::Id::new(info.id)));
                 ui.add_space(8.0);
-                ui.horizontal(|ui| {
-                    ui.heading(format!("{}  {}", info.icon, info.title));
-                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        if panel::kit::icon_button(ui, panel::icon::X, "Close", false).clicked() {
-                            asks.push(close(info));
-                        }
-                    });
-                });
+                heading(ui, info, asks);
                 ui.push_id(info.id, |ui| {
                     ui.set_max_height(share.max(80.0));
                     fill(ui, info, world, panels, asks);

@@ -37,7 +37,9 @@ pub use parts::{Parts, PartsPlugin};
 pub use player::{Next, Player, PlayerPlugin, prepare};
 pub use record::{Recorder, RecorderPlugin};
 pub use recording::{RecordError, Recording};
-pub use report::{FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport};
+pub use report::{
+    DrawnReport, FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport,
+};
 pub use run::{PlayError, PlayOptions, play};
 pub use session::{
     DEFAULT_DT, FORMAT, MAX_BYTES, MAX_FRAMES, MAX_SECONDS, Place, Session, StartHands,

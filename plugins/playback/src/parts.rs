@@ -25,7 +25,9 @@ const NAMES: [&str; 9] = [
 #[derive(Resource)]
 pub struct Parts {
     since: Instant,
+    began: Instant,
     counts: bool,
+    main: Vec<f32>,
     ms: [Vec<f32>; NAMES.len()],
 }
 
@@ -35,17 +37,20 @@ impl Parts {
         self.counts = counts;
     }
 
-    /// By name.
-    pub fn figures(&self) -> BTreeMap<String, FrameTimes> {
+    /// The whole main schedule, and its parts by name.
+    pub fn figures(&self) -> (FrameTimes, BTreeMap<String, FrameTimes>) {
         let each = NAMES.iter().zip(&self.ms);
-        each.map(|(name, ms)| ((*name).to_owned(), FrameTimes::of(ms.clone())))
-            .collect()
+        let parts = each.map(|(name, ms)| ((*name).to_owned(), FrameTimes::of(ms.clone())));
+        (FrameTimes::of(self.main.clone()), parts.collect())
     }
 
     fn end(&mut self, part: usize) {
         let now = Instant::now();
         if self.counts {
             self.ms[part].push((now - self.since).as_secs_f32() * 1e3);
+            if part + 1 == NAMES.len() {
+                self.main.push((now - self.began).as_secs_f32() * 1e3);
+            }
         }
         self.since = now;
     }
@@ -59,11 +64,14 @@ impl Plugin for PartsPlugin {
         use StudioSet::{Act, Ask, Commit, Cue, Gather, Pick, Rebuild};
         app.insert_resource(Parts {
             since: Instant::now(),
+            began: Instant::now(),
             counts: false,
+            main: Vec::new(),
             ms: Default::default(),
         })
         .add_systems(First, |mut parts: ResMut<Parts>| {
-            parts.since = Instant::now()
+            parts.since = Instant::now();
+            parts.began = parts.since;
         })
         .add_systems(Update, end::<0>.before(Gather))
         .add_systems(Update, end::<1>.after(Gather).before(Ask))
@@ -115,12 +123,13 @@ mod tests {
             app.world_mut().resource_mut::<Parts>().count(counts);
             app.update();
         }
-        let figures = app
+        let (main, figures) = app
             .world_mut()
             .remove_resource::<Parts>()
             .unwrap()
             .figures();
         assert_eq!(figures.len(), NAMES.len());
+        assert_eq!(main.count, 2);
         assert!(figures.values().all(|f| f.count == 2), "{figures:?}");
     }
 }

@@ -32,8 +32,13 @@ pub struct Report {
     pub seconds: f64,
     /// How long a frame's work took; waiting for background work is not in it.
     pub frame_ms: FrameTimes,
+    /// How long the main schedule took, without extraction and without waiting for what is drawn; empty unless it was
+    /// asked for.
+    pub main_ms: FrameTimes,
     /// Where that time went, part by part of a frame; empty unless it was asked for.
     pub parts_ms: BTreeMap<String, FrameTimes>,
+    /// What drawing each frame cost beside the main schedule; none unless it was asked for.
+    pub drawn: Option<DrawnReport>,
     /// Seconds of processor time that the whole process took while it was played; none where the system does not say.
     pub cpu_seconds: Option<f64>,
     /// How long each preview took to make.
@@ -42,6 +47,17 @@ pub struct Report {
     pub preview_apart_ms: FrameTimes,
     /// Everything that could not be done, one line each.
     pub warnings: Vec<String>,
+}
+
+/// What drawing a frame cost, over a whole session without its first second.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct DrawnReport {
+    /// From the main world into the render world, during which both stand still.
+    pub extract_ms: FrameTimes,
+    /// From the beginning to the end of a frame in the render world, waiting for the driver included.
+    pub render_ms: FrameTimes,
+    /// Processor time of the render world's thread in a frame; the driver's threads are not in it.
+    pub render_cpu_ms: FrameTimes,
 }
 
 /// One object.

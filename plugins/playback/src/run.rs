@@ -118,7 +118,7 @@ pub fn play(app: &mut App, session: Session, options: PlayOptions) -> Result<Rep
     report.frame_ms = FrameTimes::of(frame_ms);
     report.cpu_seconds = cpu;
     if let Some(parts) = app.world_mut().remove_resource::<Parts>() {
-        report.parts_ms = parts.figures();
+        (report.main_ms, report.parts_ms) = parts.figures();
     }
     report.warnings = app
         .world()

@@ -52,6 +52,7 @@ fn frame() -> impl Strategy<Value = Frame> {
                 frames,
                 head,
                 metres_per_world,
+                pixel: 1e-3 * metres_per_world,
             },
         })
 }
@@ -73,7 +74,8 @@ fn bits(f: &Frame) -> String {
             h.swipe.map(|s| s.to_array().map(f32::to_bits)),
         )
     });
-    let (head, scale) = (pose(&f.input.head), f.input.metres_per_world.to_bits());
+    let scale = f.input.metres_per_world.to_bits();
+    let head = (pose(&f.input.head), f.input.pixel.to_bits());
     format!("{:?}{hands:?}{head:?}{scale}", f.dt)
 }
 

@@ -269,7 +269,7 @@ fn readings_again(
             };
             Some(read::stroke(&points, stroke.width, &scene, &options))
         }
-        Kind::Solid(_) | Kind::Foreign { .. } => None,
+        _ => None,
     }
 }
 

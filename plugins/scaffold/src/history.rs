@@ -99,6 +99,6 @@ fn one(id: ObjectId, object: &Object) -> Option<Value> {
             "closed": stroke.closed, "width": stroke.width, "corrected": stroke.reading.auto,
             "through": stroke.through.iter().filter(|k| k.of_scaffold).map(|k| at(&k.point)).collect::<Vec<_>>(),
         }),
-        Kind::Solid(_) | Kind::Foreign { .. } => return None,
+        _ => return None,
     })
 }

@@ -98,7 +98,7 @@ pub(crate) fn lines(
             Kind::Stroke(stroke) => {
                 gizmos.linestrip(stroke.points().iter().map(|p| p.as_vec3()), faint);
             }
-            Kind::Solid(_) | Kind::Foreign { .. } => {}
+            _ => {}
         }
     }
 }
@@ -174,7 +174,7 @@ pub(crate) fn words(
                         let points = stroke.points();
                         points.get(points.len() / 2).copied().unwrap_or_default()
                     }
-                    Kind::Solid(_) | Kind::Foreign { .. } => continue,
+                    _ => continue,
                 };
                 readouts.say(at.as_vec3(), format!("{}", i + 1));
             }

@@ -198,7 +198,7 @@ fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, settings: &Settings)
         Then::End => {
             // The left end's way is played to its end.
             while let Some(rest) = draft.solo.rest() {
-                draft.solo.play(rest.min(1.0 / 90.0).max(1e-4));
+                draft.solo.play(rest.clamp(1e-4, 1.0 / 90.0));
                 draft.ends = draft.solo.ends();
                 rails(draft);
                 hang(draft);

@@ -200,10 +200,12 @@ pub(crate) fn bend(
             let into = hand.pose.affine().inverse() * rigid(&placement);
             let offsets =
                 [from.left(), from.right()].map(|e| moved(&into, &scaled(&e, &placement)));
-            let grip = grip.get_or_insert_with(|| Grip {
-                from,
-                ends: [None; 2],
-                bent: sweep.ribs.clone(),
+            let grip = grip.get_or_insert_with(|| {
+                Box::new(Grip {
+                    from,
+                    ends: [None; 2],
+                    bent: sweep.ribs.clone(),
+                })
             });
             // Taken by an end it is bent there, taken by its middle it moves.
             let takes = [along < 0.7, along > 0.3];

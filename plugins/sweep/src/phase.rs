@@ -27,7 +27,7 @@ pub enum Phase {
         /// The curve nearest to the hand.
         at: usize,
         /// What holds it.
-        grip: Option<Grip>,
+        grip: Option<Box<Grip>>,
     },
 }
 

@@ -74,12 +74,12 @@ pub fn stroke(size: f32, n: u16) -> Kind {
     let end = if n % 8 == 7 { f64::INFINITY } else { size };
     let points = [0.0, 1.0, 2.0, end].map(|x| DVec3::new(x * size, 1.0 / (3.0 + x), size));
     let mut stroke = DrawnStroke::raw(points.to_vec(), 0.008);
-    if n % 2 == 0 {
+    if n.is_multiple_of(2) {
         stroke.segments = vec![points];
         stroke.through.push(Through {
             point: points[1],
             of_scaffold: true,
-            along_line: n % 3 == 0,
+            along_line: n.is_multiple_of(3),
         });
         stroke.reading.auto = true;
     }

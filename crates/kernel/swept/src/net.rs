@@ -34,7 +34,7 @@ impl Net {
             let last = if closed { columns } else { columns - 1 };
             (0..last).for_each(|i| lines.extend([at(i), at(i + 1)]));
             if j > 0 {
-                let marked = |i: &usize| i % ALONG == 0 || (!closed && *i == columns - 1);
+                let marked = |i: &usize| i.is_multiple_of(ALONG) || (!closed && *i == columns - 1);
                 let marks = (0..columns).filter(marked);
                 marks.for_each(|i| lines.extend([at(i) - columns as u32, at(i)]));
             }

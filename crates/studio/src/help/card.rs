@@ -5,7 +5,7 @@ use bevy::prelude::World;
 use super::{Keys, Tutorial};
 use crate::command::Command;
 use crate::panel::egui::{self, RichText, Sense, Ui, Vec2};
-use crate::panel::{ACCENT, Panel, icon};
+use crate::panel::{ACCENT, Panel, icon, kit};
 use crate::settings::{Lesson, Progress, Settings};
 
 use super::tutorial::TUTORIAL_PANEL;
@@ -48,15 +48,11 @@ fn begun() -> Progress {
     }
 }
 
-fn accented(text: &str) -> egui::Button<'_> {
-    egui::Button::new(text).fill(ACCENT.gamma_multiply(0.65))
-}
-
 fn offer(ui: &mut Ui, asks: &mut Vec<Command>) {
     ui.label(RichText::new("New here?").strong());
     ui.label("Three small models in a few minutes: a cube and a sphere, a chair, a cup. You can leave at any time and go on later.");
     ui.horizontal_wrapped(|ui| {
-        if ui.add(accented("Show me")).clicked() {
+        if kit::primary(ui, "Show me").clicked() {
             asks.push(set(begun()));
         }
         if ui
@@ -123,7 +119,7 @@ fn done(ui: &mut Ui, progress: Progress, asks: &mut Vec<Command>) {
     ));
     ui.label("Next: drop a mesh of your own on the window, give parts a colour under Properties, or write an STL with File, Export.");
     ui.horizontal_wrapped(|ui| {
-        if ui.add(accented("Close")).clicked() {
+        if kit::primary(ui, "Close").clicked() {
             asks.push(close());
         }
         if ui.button("Once more").clicked() {

@@ -26,6 +26,9 @@ pub(crate) struct Step {
     /// With a gamepad.
     #[serde(default)]
     pub gamepad: String,
+    /// The only way in that needs it; with others it is passed over.
+    #[serde(default)]
+    pub only: Option<Way>,
     /// When it is done.
     pub until: Goal,
     /// What to look at.
@@ -49,6 +52,11 @@ pub(crate) enum Look {
 }
 
 impl Step {
+    /// Whether there is anything to do with what one has in hand.
+    pub fn concerns(&self, way: Way) -> bool {
+        self.only.is_none_or(|only| only == way)
+    }
+
     /// What to do with what one has in hand.
     pub fn text(&self, keys: &Keys) -> String {
         let own = match keys.way {
@@ -61,21 +69,24 @@ impl Step {
 }
 
 /// The three tasks of EasyVRModeling §6.
-pub(crate) fn course() -> Vec<Task> {
-    [
-        include_str!("../../../../assets/tutorial/1-cube-sphere.ron"),
-        include_str!("../../../../assets/tutorial/2-chair.ron"),
-        include_str!("../../../../assets/tutorial/3-cup.ron"),
-    ]
-    .into_iter()
-    .filter_map(|text| match ron::from_str(text) {
-        Ok(task) => Some(task),
-        Err(fault) => {
-            warn!("a task of the tutorial cannot be read: {fault}");
-            None
-        }
-    })
-    .collect()
+pub(crate) const COURSE: [&str; 3] = [
+    include_str!("../../../../assets/tutorial/1-cube-sphere.ron"),
+    include_str!("../../../../assets/tutorial/2-chair.ron"),
+    include_str!("../../../../assets/tutorial/3-cup.ron"),
+];
+
+/// Tasks from their texts.
+pub(crate) fn read<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<Task> {
+    texts
+        .into_iter()
+        .filter_map(|text| match ron::from_str(text) {
+            Ok(task) => Some(task),
+            Err(fault) => {
+                warn!("a task of the tutorial cannot be read: {fault}");
+                None
+            }
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -84,7 +95,7 @@ mod tests {
 
     #[test]
     fn the_tasks_are_read_whole_and_name_what_the_library_has() {
-        let tasks = course();
+        let tasks = read(COURSE);
         assert_eq!(tasks.len(), 3);
         let mut ids = std::collections::BTreeSet::new();
         let library = midair_library::Library::bundled();
@@ -101,7 +112,7 @@ mod tests {
     #[test]
     fn every_key_that_is_named_has_a_name_with_hands() {
         let keys = Keys::default();
-        for step in course().iter().flat_map(|t| &t.steps) {
+        for step in read(COURSE).iter().flat_map(|t| &t.steps) {
             let spelt = keys.spell(&step.say);
             assert!(!spelt.contains("(no key)"), "{spelt}");
         }

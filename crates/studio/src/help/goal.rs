@@ -1,5 +1,6 @@
 //! What a step of the tutorial waits for, and what goes wrong on the way.
 
+use bevy::math::Vec3;
 use midair_document::{Document, Object, ObjectId};
 use midair_field::{Node, Op};
 use serde::Deserialize;
@@ -19,6 +20,14 @@ pub(crate) enum Goal {
     Meet(String, String, usize),
     /// Of two of a part one stands within the other seen from above, and its top is higher.
     Hollow(String),
+    /// One of a part is this many metres above the ground, with all of it.
+    High(String, f32),
+    /// One of a part is nearly as tall as it is wide, or taller: what lies flat was stood up.
+    Upright(String),
+    /// Of two of a part one is clearly narrower than the other, to both sides.
+    Narrower(String),
+    /// Things are dragged along the work plane.
+    Plane,
     /// So many of a part are marked so; for the first operand any mark will do.
     Marked(String, Op, usize),
     /// A solid was fused of so many of each part, each joined so.
@@ -34,12 +43,29 @@ pub(crate) enum Goal {
 /// Metres that parts must reach into each other.
 const DEEP: f32 = 0.002;
 
+/// What goals look at.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub project: &'a Project,
+    pub library_open: bool,
+    /// Whether the work plane is in use.
+    pub plane_shown: bool,
+}
+
 impl Goal {
     /// Whether it is so.
-    pub fn is_met(&self, project: &Project, library_open: bool) -> bool {
+    pub fn is_met(&self, scene: Scene<'_>) -> bool {
+        let project = scene.project;
         let document = project.document();
         match self {
-            Self::Library => library_open,
+            Self::Library => scene.library_open,
+            Self::Plane => scene.plane_shown,
+            Self::High(part, metres) => boxes(document, part).any(|(low, _)| low.y >= *metres),
+            Self::Upright(part) => boxes(document, part).any(|(low, high)| {
+                let size = high - low;
+                size.y >= 0.8 * size.x.max(size.z)
+            }),
+            Self::Narrower(part) => narrower(document, part),
             Self::Has(part, count) => parts(document, part).count() >= *count,
             Self::Meet(part, other, count) => meeting(document, part, other) >= *count,
             Self::Hollow(part) => hollow(document, part),
@@ -57,8 +83,8 @@ impl Goal {
                 .objects()
                 .any(|(id, o)| document.is_visible(id) && made_of(o, of)),
             Self::Saved => project.path().is_some() && !project.history().is_unsaved(),
-            Self::All(goals) => goals.iter().all(|g| g.is_met(project, library_open)),
-            Self::Not(goal) => !goal.is_met(project, library_open),
+            Self::All(goals) => goals.iter().all(|g| g.is_met(scene)),
+            Self::Not(goal) => !goal.is_met(scene),
         }
     }
 }
@@ -110,10 +136,23 @@ fn meeting(document: &Document, part: &str, other: &str) -> usize {
         .count()
 }
 
-fn hollow(document: &Document, part: &str) -> bool {
-    let boxes: Vec<_> = parts(document, part)
-        .filter_map(|id| extent(document, [id]))
+/// The boxes of what is to be seen of a part.
+fn boxes<'a>(document: &'a Document, part: &'a str) -> impl Iterator<Item = (Vec3, Vec3)> + 'a {
+    parts(document, part).filter_map(|id| extent(document, [id]))
+}
+
+fn narrower(document: &Document, part: &str) -> bool {
+    let sizes: Vec<_> = boxes(document, part)
+        .map(|(low, high)| high - low)
         .collect();
+    sizes.iter().any(|a| {
+        let clearly = |b: &Vec3| a.x < 0.95 * b.x && a.z < 0.95 * b.z;
+        sizes.iter().any(clearly)
+    })
+}
+
+fn hollow(document: &Document, part: &str) -> bool {
+    let boxes: Vec<_> = boxes(document, part).collect();
     boxes.iter().any(|(low, high)| {
         boxes.iter().any(|(l, h)| {
             let within = l.x > low.x + DEEP

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
+use serde::Deserialize;
 
 /// With what one works at the moment; instructions differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Way {
     /// Two tracked hands.
     #[default]

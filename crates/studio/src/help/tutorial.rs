@@ -3,13 +3,15 @@
 use bevy::prelude::*;
 use midair_document::ObjectId;
 
-use super::course::{Look, Step, Task, course};
-use super::goal::parts;
+use super::course::{COURSE, Look, Step, Task, read};
+use super::goal::{Scene, parts};
+use super::keys::Keys;
 use crate::StudioSet;
 use crate::command::Command;
 use crate::notice::Notices;
 use crate::objects::extent;
 use crate::panel::Panels;
+use crate::plane::WorkPlane;
 use crate::project::{Project, Shelf};
 use crate::settings::{Lesson, Progress, Settings};
 
@@ -28,6 +30,16 @@ pub struct Tutorial {
 }
 
 impl Tutorial {
+    /// A course, one text for each task, as in `assets/tutorial`; one that cannot be read is left out with a
+    /// warning.
+    pub fn of<'a>(texts: impl IntoIterator<Item = &'a str>) -> Self {
+        Self {
+            tasks: read(texts),
+            wrong: None,
+            seconds: 0.0,
+        }
+    }
+
     /// How many steps there are.
     pub fn len(&self) -> usize {
         self.tasks.iter().map(|t| t.steps.len()).sum()
@@ -81,12 +93,7 @@ impl Tutorial {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.insert_resource(Tutorial {
-        tasks: course(),
-        wrong: None,
-        seconds: 0.0,
-    })
-    .add_systems(
+    app.insert_resource(Tutorial::of(COURSE)).add_systems(
         Update,
         (
             // What was asked for in this frame counts in this frame.
@@ -100,8 +107,8 @@ pub(super) fn plugin(app: &mut App) {
 fn follow(
     mut tutorial: ResMut<Tutorial>,
     mut settings: ResMut<Settings>,
-    project: Res<Project>,
-    shelf: Res<Shelf>,
+    (project, shelf, plane): (Res<Project>, Res<Shelf>, Res<WorkPlane>),
+    keys: Res<Keys>,
     time: Res<Time>,
     mut notices: ResMut<Notices>,
 ) {
@@ -115,9 +122,14 @@ fn follow(
         settings.help.tutorial.state = Lesson::Done;
         return;
     };
-    if !step.until.is_met(&project, shelf.open) {
+    let scene = Scene {
+        project: &project,
+        library_open: shelf.open,
+        plane_shown: plane.shown,
+    };
+    if step.concerns(keys.way) && !step.until.is_met(scene) {
         let mut wrong = step.wrong.iter();
-        let wrong = wrong.find(|(goal, _)| goal.is_met(&project, shelf.open));
+        let wrong = wrong.find(|(goal, _)| goal.is_met(scene));
         tutorial.wrong = wrong.map(|(_, text)| text.clone());
         return;
     }

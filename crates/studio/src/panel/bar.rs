@@ -37,24 +37,16 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
         };
         let undo = named("Undo", history.undo_names().next(), "Ctrl+Z");
         let redo = named("Redo", history.redo_names().next(), "Ctrl+Shift+Z");
-        if ui
-            .add_enabled(
-                history.undo_len() > 0,
-                egui::Button::new(icon::ARROW_COUNTER_CLOCKWISE),
-            )
-            .on_hover_text(undo)
-            .clicked()
-        {
+        let can = history.undo_len() > 0;
+        let sign = icon::ARROW_COUNTER_CLOCKWISE;
+        let button = ui.add_enabled_ui(can, |ui| kit::icon_button(ui, sign, &undo, false));
+        if button.inner.clicked() {
             asks.push(Command::Undo);
         }
-        if ui
-            .add_enabled(
-                history.redo_len() > 0,
-                egui::Button::new(icon::ARROW_CLOCKWISE),
-            )
-            .on_hover_text(redo)
-            .clicked()
-        {
+        let can = history.redo_len() > 0;
+        let sign = icon::ARROW_CLOCKWISE;
+        let button = ui.add_enabled_ui(can, |ui| kit::icon_button(ui, sign, &redo, false));
+        if button.inner.clicked() {
             asks.push(Command::Redo);
         }
         ui.separator();

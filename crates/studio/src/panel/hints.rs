@@ -1,4 +1,4 @@
-use bevy_egui::egui::{RichText, Ui};
+use bevy_egui::egui::{Label, RichText, TextStyle, Ui};
 
 use super::kit;
 use crate::hands::Action;
@@ -7,27 +7,42 @@ use crate::tools::{HintKey, Hints};
 /// What a way in calls an action: the key or button that does it.
 pub type KeyNames<'a> = &'a dyn Fn(Action) -> String;
 
-/// What each button does now, on one line; `more` is what only this way in has, as key and meaning.
+/// Points between two hints.
+const GAP: f32 = 10.0;
+
+/// What each button does now, on one line; `more` is what only this way in has, as key and meaning. What stands
+/// first is the most useful; what has no room at the end is left out.
 pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames<'_>, more: &[(String, String)]) {
-    ui.horizontal_wrapped(|ui| {
+    let tools = hints.buttons.iter().map(|hint| {
+        let key = match hint.action {
+            HintKey::Action(action) => names(action),
+            HintKey::Move => "move".to_owned(),
+            HintKey::Swipe => "swipe".to_owned(),
+        };
+        (key, hint.does.as_str())
+    });
+    let more = more.iter().map(|(key, does)| (key.clone(), does.as_str()));
+    let all: Vec<_> = tools
+        .chain(more)
+        .filter(|(key, _)| !key.is_empty())
+        .collect();
+    ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        ui.label(kit::strong(&hints.status));
-        let tools = hints.buttons.iter().map(|hint| {
-            let key = match hint.action {
-                HintKey::Action(action) => names(action),
-                HintKey::Move => "move".to_owned(),
-                HintKey::Swipe => "swipe".to_owned(),
-            };
-            (key, hint.does.as_str())
-        });
-        let more = more.iter().map(|(key, does)| (key.clone(), does.as_str()));
-        for (key, does) in tools.chain(more) {
-            if key.is_empty() {
-                continue;
+        ui.add(Label::new(kit::strong(&hints.status)).truncate());
+        let dots = kit::width(ui, "…", TextStyle::Body) + GAP;
+        for (i, (key, does)) in all.iter().enumerate() {
+            let wide = GAP
+                + kit::key_cap_width(ui, key)
+                + kit::width(ui, does, TextStyle::Body)
+                + 3.0 * ui.spacing().item_spacing.x;
+            let last = i + 1 == all.len();
+            if ui.available_width() < wide + if last { 0.0 } else { dots } {
+                ui.label(RichText::new("…").weak());
+                return;
             }
-            ui.add_space(10.0);
-            kit::key_cap(ui, &key);
-            ui.label(RichText::new(does).weak());
+            ui.add_space(GAP);
+            kit::key_cap(ui, key);
+            ui.label(RichText::new(*does).weak());
         }
     });
 }

@@ -1,8 +1,8 @@
 //! The parts that panels are made of, so that the same thing looks the same everywhere.
 
 use bevy_egui::egui::{
-    Button, FontFamily, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2,
-    WidgetInfo, WidgetType,
+    Button, Context, FontFamily, Id, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    Vec2, WidgetInfo, WidgetType,
 };
 
 use super::style::{FILLED, Palette, STRONG, UNIT};
@@ -40,6 +40,19 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
     ui.add(Button::new(text).fill(palette.accent_fill))
 }
 
+/// How wide a text is in a style, in points.
+pub fn width(ui: &Ui, text: &str, style: TextStyle) -> f32 {
+    let font = style.resolve(ui.style());
+    let painter = ui.painter();
+    let galley = painter.layout_no_wrap(text.to_owned(), font, ui.visuals().text_color());
+    galley.size().x
+}
+
+/// How wide the cap of a key is, in points.
+pub fn key_cap_width(ui: &Ui, key: &str) -> f32 {
+    (width(ui, key, TextStyle::Small) + 12.0).max(20.0)
+}
+
 /// A key, as a cap.
 pub fn key_cap(ui: &mut Ui, key: &str) -> Response {
     let palette = Palette::of(ui.visuals());
@@ -49,10 +62,61 @@ pub fn key_cap(ui: &mut Ui, key: &str) -> Response {
         .layout_no_wrap(key.to_owned(), font, palette.text);
     let size = galley.size() + Vec2::new(12.0, 4.0);
     let (rect, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::hover());
+    let named = || WidgetInfo::labeled(WidgetType::Label, true, key);
+    response.widget_info(named);
     let edge = Stroke::new(1.0, palette.line);
     ui.painter()
         .rect(rect, 4.0, palette.raised, edge, StrokeKind::Inside);
     ui.painter()
         .galley(rect.center() - 0.5 * galley.size(), galley, palette.text);
     response
+}
+
+/// By how many tabs the panel `id` is to be turned in this frame. A panel that asks has tabs.
+pub fn turned(ctx: &Context, id: &str) -> i32 {
+    let key = Id::new(("tabs", id));
+    let by = ctx.data(|d| d.get_temp(key)).unwrap_or(0);
+    ctx.data_mut(|d| d.insert_temp(key, 0));
+    by
+}
+
+/// Turns the tabs of a panel; says whether it has any.
+pub fn turn(ctx: &Context, id: &str, by: i32) -> bool {
+    let key = Id::new(("tabs", id));
+    let has = ctx.data(|d| d.get_temp::<i32>(key)).is_some();
+    if has {
+        ctx.data_mut(|d| d.insert_temp(key, by));
+    }
+    has
+}
+
+/// What one most likely wants of a panel: there the focus of a gamepad begins.
+pub fn begin_at(ctx: &Context, panel: &str, widget: Id) {
+    ctx.data_mut(|d| d.insert_temp(Id::new(("begin", panel)), widget));
+}
+
+/// What [`begin_at`] named last.
+pub fn begins_at(ctx: &Context, panel: &str) -> Option<Id> {
+    ctx.data(|d| d.get_temp(Id::new(("begin", panel))))
+}
+
+/// How far something that is shown has appeared, from 0 to 1: it eases in within the style's time.
+/// To be asked in every frame in which it is shown.
+pub fn appeared(ui: &Ui, id: Id) -> f32 {
+    let key = id.with("appeared");
+    let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
+    let (since, last): (f64, u64) = ui.data(|d| d.get_temp(key)).unwrap_or((now, 0));
+    // Not shown in the pass before: it begins anew.
+    let since = if last + 2 < pass { now } else { since };
+    ui.data_mut(|d| d.insert_temp(key, (since, pass)));
+    let takes = f64::from(ui.style().animation_time);
+    let part = if takes > 0.0 {
+        ((now - since) / takes).clamp(0.0, 1.0) as f32
+    } else {
+        1.0
+    };
+    if part < 1.0 {
+        ui.ctx().request_repaint();
+    }
+    1.0 - (1.0 - part).powi(3)
 }

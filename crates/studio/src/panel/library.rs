@@ -8,7 +8,7 @@ use bevy_egui::egui::{
 use midair_field::RecipeHash;
 use midair_library::{Component, OWN};
 
-use super::{ACCENT, Panel, icon};
+use super::{ACCENT, Panel, icon, kit};
 use crate::bounded::Bounded;
 use crate::command::{Command, Dialog};
 use crate::evaluate::Evaluations;
@@ -89,6 +89,10 @@ impl Panel for LibraryPanel {
                 asks.push(Command::Dialog(Dialog::Import));
             }
         });
+        let by = kit::turned(ui.ctx(), "library");
+        if by != 0 {
+            self.turn(by, shelf, settings);
+        }
         if self.query.trim().is_empty() {
             self.categories(ui, shelf, settings);
         }
@@ -110,23 +114,44 @@ struct Section<'a> {
 }
 
 impl LibraryPanel {
+    /// The category so many further, around; a search ends.
+    fn turn(&mut self, by: i32, shelf: &Shelf, settings: &Settings) {
+        let mut all = vec![Category::All];
+        if !settings.shelf.favourites.is_empty() {
+            all.push(Category::Favourites);
+        }
+        let named = shelf.library.categories();
+        all.extend(named.map(|(name, _)| Category::Named(name.to_owned())));
+        let at = all.iter().position(|c| *c == self.category).unwrap_or(0);
+        let to = (at as i32 + by).rem_euclid(all.len() as i32);
+        self.category = all.swap_remove(to as usize);
+        self.query.clear();
+    }
+
     fn categories(&mut self, ui: &mut Ui, shelf: &Shelf, settings: &Settings) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
-            let mut choose = |ui: &mut Ui, text: String, category: Category| {
+            ui.spacing_mut().button_padding.x = 8.0;
+            let mut choose = |ui: &mut Ui, text: String, category: Category, about: &str| {
                 if ui
                     .selectable_label(self.category == category, text)
+                    .on_hover_text(about)
                     .clicked()
                 {
                     self.category = category;
                 }
             };
-            choose(ui, "All".into(), Category::All);
-            let stars = settings.shelf.favourites.len();
-            choose(ui, format!("{} {stars}", icon::STAR), Category::Favourites);
+            choose(ui, "All".into(), Category::All, "Everything");
+            let stars = format!("{} favourites", settings.shelf.favourites.len());
+            choose(ui, icon::STAR.into(), Category::Favourites, &stars);
             for (name, components) in shelf.library.categories() {
-                let text = format!("{name} {}", components.len());
-                choose(ui, text, Category::Named(name.to_owned()));
+                let count = format!("{} of them", components.len());
+                choose(
+                    ui,
+                    name.to_owned(),
+                    Category::Named(name.to_owned()),
+                    &count,
+                );
             }
         });
     }
@@ -197,7 +222,15 @@ impl LibraryPanel {
             });
             return;
         }
+        let mut first = true;
+        let shown = match &self.category {
+            Category::All => "all",
+            Category::Favourites => "stars",
+            Category::Named(name) => name,
+        };
+        // Each begins at its own top.
         egui::ScrollArea::vertical()
+            .id_salt(shown.to_owned())
             .auto_shrink([false, false])
             .show(ui, |ui| {
                 let gap = 6.0;
@@ -221,6 +254,9 @@ impl LibraryPanel {
                         ui.horizontal(|ui| {
                             for component in row {
                                 let response = self.tile(ui, world, component, size);
+                                if std::mem::take(&mut first) {
+                                    kit::begin_at(ui.ctx(), "library", response.id);
+                                }
                                 self.act(response, world, component, asks);
                             }
                         });

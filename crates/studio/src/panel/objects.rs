@@ -1,7 +1,8 @@
-use bevy_egui::egui::{RichText, Ui};
+use bevy_egui::egui::{RichText, TextStyle, Ui};
 use midair_document::Document;
 use midair_field::Op;
 
+use super::kit;
 use super::style::operand_text;
 use crate::show::Tint;
 
@@ -11,8 +12,16 @@ pub fn operands(ui: &mut Ui, document: &Document) {
     if pending.is_empty() {
         return;
     }
-    ui.horizontal_wrapped(|ui| {
+    // One line: the view is not to jump while one marks.
+    ui.horizontal(|ui| {
         for (i, &(id, op)) in pending.iter().enumerate() {
+            let name = document.object(id).map_or("?", |o| &o.name);
+            let left = pending.len() - i;
+            let wide = kit::width(ui, name, TextStyle::Body) + 24.0;
+            if ui.available_width() < wide + if left > 1 { 80.0 } else { 0.0 } {
+                ui.label(RichText::new(format!("… and {left} more")).weak());
+                return;
+            }
             let tint = match if i == 0 { Op::Union } else { op } {
                 Op::Union => Tint::Union,
                 Op::Intersect => Tint::Intersect,
@@ -26,7 +35,6 @@ pub fn operands(ui: &mut Ui, document: &Document) {
                         .strong(),
                 );
             }
-            let name = document.object(id).map_or("?", |o| &o.name);
             ui.label(RichText::new(name).color(colour));
         }
     });

@@ -392,6 +392,8 @@ impl View {
                         Kind::Foreign { .. } => icon::PUZZLE_PIECE,
                         Kind::Line(_) => icon::LINE_SEGMENT,
                         Kind::Stroke(_) => icon::SCRIBBLE,
+                        Kind::Sheet(_) => icon::WAVES,
+                        Kind::Reference(_) => icon::IMAGE,
                     },
                     visible: object.visible,
                     locked: object.locked,

@@ -30,6 +30,9 @@ pub(super) struct Properties {
     picture: Option<(ObjectId, f32, f32)>,
 }
 
+/// Points across a number.
+const FIELD: f32 = 60.0;
+
 /// A place in the numbers a person reads: the chosen unit, degrees, factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Numbers {
@@ -42,7 +45,7 @@ impl Numbers {
     fn of(placement: &Placement, unit: Unit) -> Self {
         let (x, y, z) = placement.rotation.to_euler(EulerRot::XYZ);
         Self {
-            position: placement.translation * unit.per_metre() as f32,
+            position: (placement.translation * unit.per_metre() as f32).map(shown),
             degrees: (Vec3::new(x, y, z) * 180.0 / std::f32::consts::PI).map(shown),
             scale: placement.scale,
         }
@@ -128,8 +131,15 @@ impl Properties {
         let held = self.place.filter(|(of, _)| *of == id);
         let mut now = held.map_or(before, |(_, n)| n);
         let mut busy = false;
+        // Digits after the point: a tenth of a millimetre, of a degree.
+        let fine = (4.0 - unit.per_metre().log10()).round().clamp(1.0, 4.0) as usize;
         let mut row = |ui: &mut Ui, name: &str, values: &mut Vec3, speed: f32, suffix: &str| {
             ui.label(name);
+            let digits = match name {
+                "Position" => fine,
+                "Rotation" => 1,
+                _ => 3,
+            };
             for (axis, value) in
                 ["X", "Y", "Z"]
                     .into_iter()
@@ -137,10 +147,11 @@ impl Properties {
             {
                 let drag = DragValue::new(value)
                     .speed(speed)
-                    .max_decimals(3)
+                    .max_decimals(digits)
                     .suffix(suffix);
                 let field = ui
-                    .add_enabled(!object.locked, drag)
+                    .add_enabled_ui(!object.locked, |ui| ui.add_sized([FIELD, 26.0], drag))
+                    .inner
                     .on_hover_text(format!("{name} {axis}"));
                 busy |= field.dragged() || field.has_focus();
             }

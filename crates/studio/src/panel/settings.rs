@@ -11,6 +11,9 @@ use crate::settings::Settings;
 /// Parts that are remembered rather than set.
 const REMEMBERED: [&str; 3] = ["help", "files", "palettes"];
 
+/// The pages that stand first.
+const FIRST: [&str; 4] = ["look", "hands", "units", "snap"];
+
 /// What one chooses from.
 const CHOICES: [(&str, &[&str]); 4] = [
     ("comfort.desktop", &["Mirror", "Spectator"]),
@@ -53,7 +56,11 @@ impl Panel for SettingsPanel {
             .iter()
             .filter(|(part, _)| !REMEMBERED.contains(&part.as_str()))
             .collect();
-        ui.set_min_width(ui.available_width().min(360.0));
+        // What one looks for most comes first.
+        let rank = |part: &str| FIRST.iter().position(|f| *f == part);
+        let mut parts = parts;
+        parts.sort_by_key(|(part, _)| rank(part).unwrap_or(FIRST.len()));
+        ui.set_width(ui.available_width().min(400.0));
         ui.add(egui::TextEdit::singleline(&mut self.query).hint_text("Find a setting"));
         let query = self.query.trim().to_lowercase();
         if query.is_empty() {

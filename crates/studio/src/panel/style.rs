@@ -37,6 +37,8 @@ pub struct Palette {
     pub hovered: Color32,
     /// The same while it is pressed.
     pub pressed: Color32,
+    /// Boxes to tick and rails of sliders: to be seen on a panel without a word on them.
+    pub control: Color32,
     /// Between things.
     pub line: Color32,
     /// What is read.
@@ -57,6 +59,7 @@ const DARK: Palette = Palette {
     raised: Color32::from_rgb(0x33, 0x36, 0x3f),
     hovered: Color32::from_rgb(0x41, 0x45, 0x50),
     pressed: Color32::from_rgb(0x58, 0x49, 0xa0),
+    control: Color32::from_rgb(0x58, 0x5c, 0x68),
     line: Color32::from_rgb(0x3a, 0x3d, 0x46),
     text: Color32::from_rgb(0xe8, 0xe6, 0xe2),
     weak: Color32::from_rgb(0xb6, 0xb8, 0xbf),
@@ -71,6 +74,7 @@ const LIGHT: Palette = Palette {
     raised: Color32::from_rgb(0xe5, 0xe5, 0xe6),
     hovered: Color32::from_rgb(0xd8, 0xd8, 0xdb),
     pressed: Color32::from_rgb(0xcd, 0xc4, 0xf3),
+    control: Color32::from_rgb(0xb9, 0xba, 0xc1),
     line: Color32::from_rgb(0xce, 0xce, 0xd2),
     text: Color32::from_rgb(0x22, 0x24, 0x2a),
     weak: Color32::from_rgb(0x50, 0x53, 0x5b),
@@ -156,6 +160,7 @@ pub fn visuals(room: RoomKind) -> Visuals {
         expansion: 0.0,
     };
     visuals.widgets.inactive = widget(palette.raised, Stroke::NONE);
+    visuals.widgets.inactive.bg_fill = palette.control;
     visuals.widgets.hovered = widget(palette.hovered, Stroke::new(1.0, palette.line));
     visuals.widgets.open = widget(palette.hovered, Stroke::new(1.0, palette.line));
     // The focus by keyboard is drawn as what is pressed: its edge has to be seen.

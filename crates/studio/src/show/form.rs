@@ -12,11 +12,15 @@ use crate::project::Project;
 /// made yet. Starts no work.
 pub fn form(project: &Project, evaluations: &Evaluations, object: &Object) -> Option<Arc<TriMesh>> {
     match &object.kind {
-        Kind::Solid(recipe) => display_steps(project.document(), object, recipe)
-            .into_iter()
-            .find_map(|step| evaluations.made(&Key::new(recipe, step)))
-            .map(|made| made.mesh.clone()),
+        Kind::Solid(recipe) | Kind::Sheet(recipe) => {
+            display_steps(project.document(), object, recipe)
+                .into_iter()
+                .find_map(|step| evaluations.made(&Key::new(recipe, step)))
+                .map(|made| made.mesh.clone())
+        }
         Kind::Foreign { mesh, .. } => project.mesh(mesh),
+        // Nothing comes to rest on a line, and a line by its box.
+        Kind::Line(_) | Kind::Stroke(_) => None,
         Kind::Reference(reference) => {
             let half = reference.bounds().max;
             let corner = |x: f32, y: f32| half * Vec3::new(x, y, 0.0);

@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::{QueryFilter, ReadRapierContext};
 use super::Drafts;
 use crate::StudioSet;
 use crate::hands::{Hands, Side};
-use crate::pick::Proxy;
+use crate::pick::{Proxy, Touch};
 use crate::plane::WorkPlane;
 use crate::ruler::Ruler;
 use crate::settings::{MirrorPlane, Settings};
@@ -71,6 +71,7 @@ fn plumb(
     mut gizmos: Gizmos,
     hands: Res<Hands>,
     drafts: Res<Drafts>,
+    touch: Res<Touch>,
     context: ReadRapierContext,
     proxies: Query<&Proxy>,
     mut discs: Query<(&Contact, &mut Transform, &mut Visibility)>,
@@ -85,6 +86,11 @@ fn plumb(
             && hands
                 .head
                 .is_none_or(|h| (h.rotation * Vec3::NEG_Z).dot(tip - h.position) > 0.0);
+        // A hand that lies on a thing shows by itself how deep it is.
+        let resting = touch
+            .get(contact.0)
+            .is_some_and(|t| drafts.get(t.object).is_none());
+        let seen = seen && !resting;
         // What is held moves along with the hand and is not below it.
         let below = |entity: Entity| {
             proxies

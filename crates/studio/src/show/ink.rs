@@ -57,7 +57,7 @@ pub(super) fn draw(
             Kind::Stroke(stroke) => {
                 tube(&stroke.points(), 0.5 * stroke.width, stroke.closed, SIDES)
             }
-            Kind::Solid(_) | Kind::Foreign { .. } => continue,
+            _ => continue,
         };
         let handle = meshes.add(to_bevy_mesh(&mesh));
         commands.entity(entity).insert((

@@ -1,6 +1,7 @@
 //! Entities that follow the document, and how they look.
 
 mod cue;
+mod ease;
 mod follow;
 mod form;
 mod guides;
@@ -20,7 +21,7 @@ pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_
 pub use form::form;
 pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
-pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, camera, headset, is_software};
+pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, Unhurried, camera, headset, is_software};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

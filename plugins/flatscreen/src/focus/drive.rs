@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiClipboard, EguiContext, EguiInput, PrimaryEguiContext, egui};
 use midair_studio::{
     command::Command,
-    panel::{Dock, Panels},
+    panel::{Dock, Panels, kit},
 };
 
 use super::{Focus, Spot, Typing, map};
@@ -82,10 +82,17 @@ pub(crate) fn drive(
     if !focus.inside {
         return;
     }
-    if controls.just_pressed(Control::PanelTabRight) {
-        focus.enter(&ctx, 1);
-    } else if controls.just_pressed(Control::PanelTabLeft) {
-        focus.enter(&ctx, -1);
+    for (control, by) in [(Control::PanelTabRight, 1), (Control::PanelTabLeft, -1)] {
+        if controls.just_pressed(control) {
+            // A panel with tabs turns them; from one without one goes to the next.
+            let name = focus.region().map_or("", |r| r.name);
+            if kit::turn(&ctx, name, by as i32) {
+                focus.want(name);
+            } else {
+                focus.enter(&ctx, by);
+            }
+            return;
+        }
     }
     if controls.just_pressed(Control::PanelLeave) {
         let by_pad = controls.device() == Device::Pad;
@@ -96,6 +103,14 @@ pub(crate) fn drive(
     if controls.just_pressed(Control::PanelPress) {
         if focus.is_text() {
             typing.begin();
+            // What is typed takes the place of what stands there.
+            input.events.push(egui::Event::Key {
+                key: egui::Key::A,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: egui::Modifiers::CTRL | egui::Modifiers::COMMAND,
+            });
             return;
         }
         for pressed in [true, false] {

@@ -70,6 +70,12 @@ impl Map {
         self.push(name, true, true, spots);
     }
 
+    /// The same for what stays where it is when one leaves it.
+    pub fn corner(&mut self, name: &'static str, layer: LayerId) {
+        let spots = self.spots(layer, 0);
+        self.push(name, false, true, spots);
+    }
+
     /// With the menu or list that is open, if one is.
     pub fn finish(mut self) -> Vec<Region> {
         if self.ctx.any_popup_open() {

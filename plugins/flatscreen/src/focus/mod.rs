@@ -13,7 +13,7 @@ use bevy_egui::egui::{self, Rect, WidgetType};
 pub(crate) use drive::drive;
 pub(crate) use map::Map;
 pub use map::{Region, Spot};
-use midair_studio::panel::ACCENT;
+use midair_studio::panel::{ACCENT, kit};
 pub use typing::Typing;
 pub(crate) use typing::show as keyboard;
 
@@ -116,7 +116,10 @@ impl Focus {
         if let Some(name) = &self.wanted
             && let Some(region) = self.regions.iter().find(|r| r.name == *name)
         {
-            let (name, first) = (region.name, region.first());
+            // By gamepad one begins at what one most likely wants.
+            let likely = kit::begins_at(ctx, name)
+                .and_then(|id| region.spots.iter().find(|s| s.id == id).copied());
+            let (name, first) = (region.name, likely.unwrap_or(region.first()));
             self.region = name;
             self.inside = true;
             self.wanted = None;

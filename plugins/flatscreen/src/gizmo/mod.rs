@@ -20,7 +20,7 @@ use midair_studio::{
     units::length,
 };
 
-pub(crate) use draw::{Overlay, draw};
+pub(crate) use draw::draw;
 pub use handles::Mode;
 use handles::{Change, Frame, Handle};
 

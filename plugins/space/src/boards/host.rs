@@ -3,9 +3,10 @@
 use std::mem;
 
 use bevy::prelude::*;
+use bevy_egui::EguiClipboard;
 use midair_studio::command::{Command, Dialogs};
 use midair_studio::hands::{Hands, Haptic};
-use midair_studio::panel::{self, Dock, Host, Panels, egui};
+use midair_studio::panel::{self, Dock, Host, Key, Panels, egui};
 use midair_studio::project::{Project, Recoverables, Selection, Shelf};
 use midair_studio::settings::Settings;
 use midair_studio::tools::Tools;
@@ -270,7 +271,11 @@ fn came_of_it(world: &mut World, boards: &mut Boards, board: &mut Board, shown: 
         }
     }
     if let Some(key) = shown.key {
-        let (events, done) = keys::typed(key, &mut boards.keyboard);
+        let copied = (key == Key::Paste)
+            .then(|| world.get_resource_mut::<EguiClipboard>())
+            .flatten()
+            .and_then(|mut clipboard| clipboard.get_text());
+        let (events, done) = keys::typed(key, &mut boards.keyboard, copied);
         board.stale = true;
         if let Some(field) = boards.typing.and_then(|t| boards.all.get_mut(&t)) {
             field.events.extend(events);

@@ -33,6 +33,10 @@ pub fn headset() -> impl Bundle {
     )
 }
 
+/// A window of which only a picture is taken: a software renderer draws in it what a graphics card would.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct Unhurried;
+
 /// A camera of the room; where it stands is to be added.
 pub fn camera(eye: Eye) -> impl Bundle {
     (
@@ -53,11 +57,11 @@ pub fn camera(eye: Eye) -> impl Bundle {
 /// depths that several samples per pixel do not have, so it goes with edges that are smoothed afterwards. In
 /// a headset it is four samples and no shade.
 pub(super) fn afford(
-    adapter: Option<Res<RenderAdapterInfo>>,
+    (adapter, unhurried): (Option<Res<RenderAdapterInfo>>, Option<Res<Unhurried>>),
     cameras: Query<(Entity, &Eye), Added<Eye>>,
     mut commands: Commands,
 ) {
-    let software = adapter.is_none_or(|a| is_software(&a));
+    let software = unhurried.is_none() && adapter.is_none_or(|a| is_software(&a));
     for (entity, eye) in &cameras {
         let mut camera = commands.entity(entity);
         if *eye == Eye::Headset || software && *eye == Eye::Working {

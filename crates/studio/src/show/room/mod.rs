@@ -19,7 +19,7 @@ use bevy::{
 
 use crate::settings::{RoomKind, Settings};
 
-pub use eye::{Eye, FIELD_OF_VIEW, camera, headset};
+pub use eye::{Eye, FIELD_OF_VIEW, Unhurried, camera, headset};
 
 /// The colours of a room.
 struct Colours {
@@ -47,8 +47,8 @@ impl Colours {
                 ],
                 ground: Color::srgba_u8(0x2c, 0x2f, 0x36, 0xb0),
                 lines: [
-                    Color::srgba(0.72, 0.75, 0.82, 0.10),
-                    Color::srgba(0.78, 0.81, 0.88, 0.26),
+                    Color::srgba(0.72, 0.75, 0.82, 0.055),
+                    Color::srgba(0.78, 0.81, 0.88, 0.17),
                 ],
                 light: [620.0, 20.0],
                 key: 3_600.0,
@@ -61,8 +61,8 @@ impl Colours {
                 ],
                 ground: Color::srgba_u8(0xd8, 0xda, 0xde, 0xb0),
                 lines: [
-                    Color::srgba(0.20, 0.22, 0.26, 0.16),
-                    Color::srgba(0.16, 0.18, 0.22, 0.36),
+                    Color::srgba(0.20, 0.22, 0.26, 0.11),
+                    Color::srgba(0.16, 0.18, 0.22, 0.28),
                 ],
                 light: [760.0, 40.0],
                 key: 3_900.0,
@@ -90,19 +90,24 @@ pub struct RoomPlugin;
 
 impl Plugin for RoomPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((InfiniteGridPlugin, super::guides::plugin, lines::plugin))
-            .init_resource::<Air>()
-            .insert_resource(DirectionalLightShadowMap { size: 1536 })
-            .add_systems(Startup, furnish)
-            .add_systems(
-                Update,
-                (
-                    paint.run_if(resource_changed::<Settings>),
-                    breathe,
-                    eye::afford,
-                )
-                    .chain(),
-            );
+        app.add_plugins((
+            InfiniteGridPlugin,
+            super::guides::plugin,
+            super::ease::plugin,
+            lines::plugin,
+        ))
+        .init_resource::<Air>()
+        .insert_resource(DirectionalLightShadowMap { size: 1536 })
+        .add_systems(Startup, furnish)
+        .add_systems(
+            Update,
+            (
+                paint.run_if(resource_changed::<Settings>),
+                breathe,
+                eye::afford,
+            )
+                .chain(),
+        );
     }
 }
 
@@ -125,7 +130,7 @@ struct KeyLight;
 const GROUND: [f32; 2] = [3.0, 14.0];
 
 fn furnish(
-    adapter: Option<Res<RenderAdapterInfo>>,
+    (adapter, unhurried): (Option<Res<RenderAdapterInfo>>, Option<Res<Unhurried>>),
     windows: Query<&Window>,
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -137,14 +142,15 @@ fn furnish(
         InfiniteGridSettings {
             // A line every 0.1 m, a strong one every metre.
             scale: 10.0,
-            fadeout_distance: 18.0,
-            dot_fadeout_strength: 0.2,
+            fadeout_distance: 12.0,
+            dot_fadeout_strength: 0.3,
             ..default()
         },
     ));
     // Without a graphics card a window shows no shadows: a frame in time is worth more. A picture
     // has the time.
-    let shadows = windows.is_empty() || !adapter.is_some_and(|a| is_software(&a));
+    let shadows =
+        windows.is_empty() || unhurried.is_some() || !adapter.is_some_and(|a| is_software(&a));
     let mut ground = commands.spawn((
         Name::new("ground"),
         Ground,
@@ -263,7 +269,7 @@ fn paint(
         settings.minor_line_color = minor;
         settings.major_line_color = major;
         // Colour belongs to the model: the axes are told apart by their strength alone.
-        settings.x_axis_color = major.with_alpha(1.0).mix(&colours.air[0], 0.6);
+        settings.x_axis_color = major.with_alpha(1.0).mix(&colours.air[2], 0.6);
         settings.z_axis_color = settings.x_axis_color;
     }
     let [middle, high, low] = colours.air.map(|c| c.to_linear());
