@@ -58,7 +58,12 @@ impl Performer {
                             app.ask(command)?;
                         }
                     }
-                    time += frame.dt.as_secs_f64() / FASTER;
+                    // A press that is held or doubled has its own time.
+                    let calm = matches!(
+                        session.steps()[frame.step],
+                        Step::Move { .. } | Step::Both { .. } | Step::Slide { .. } | Step::Wait(_)
+                    );
+                    time += frame.dt.as_secs_f64() / if calm { FASTER } else { 1.0 };
                     let at = |e: anyhow::Error| e.context(session.place(frame.step).to_string());
                     if self.presses(&frame.input) {
                         self.settle(app).map_err(at)?;

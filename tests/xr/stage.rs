@@ -257,6 +257,14 @@ impl App {
         Ok(())
     }
 
+    /// Ends it as a power cut would, once its recording is written.
+    pub fn kill(&mut self) -> Result<()> {
+        sleep(Duration::from_millis(2500));
+        self.process.0.kill()?;
+        self.process.0.wait()?;
+        Ok(())
+    }
+
     /// It has started itself again, and counts from the start.
     pub fn counts_again(&mut self) {
         self.asked = 0;
