@@ -1,7 +1,7 @@
 //! What a test is told, and what it may ask for: a conversation by two files in a folder.
 //!
 //! A test that drives real devices cannot count frames: it waits until what it did has arrived. `said.jsonl` gets a line of
-//! JSON whenever anything of note has changed; `asks.ron` is read as it grows, a command a line, and asked for as a panel
+//! JSON for each frame; `asks.ron` is read as it grows, a command a line, and asked for as a panel
 //! would.
 
 use std::fs::{File, OpenOptions};
@@ -47,7 +47,6 @@ impl Plugin for RehearsalPlugin {
             heard,
             rest: String::new(),
             asked: 0,
-            last: String::new(),
             frames: 0,
         })
         .init_resource::<Arrivals>()
@@ -67,7 +66,6 @@ struct Talk {
     rest: String,
     /// Commands asked for so far.
     asked: usize,
-    last: String,
     frames: u64,
 }
 
@@ -194,10 +192,7 @@ fn tell(world: &mut World) {
     };
     let mut talk = world.resource_mut::<Talk>();
     talk.frames += 1;
-    if line != talk.last {
-        let frames = talk.frames;
-        // A test that is gone needs to be told nothing.
-        let _ = writeln!(talk.said, "{{\"frame\":{frames},{}", &line[1..]);
-        talk.last = line;
-    }
+    let frames = talk.frames;
+    // A test that is gone needs to be told nothing.
+    let _ = writeln!(talk.said, "{{\"frame\":{frames},{}", &line[1..]);
 }

@@ -49,6 +49,7 @@ impl Performer {
     pub fn session(&mut self, app: &mut App, session: &Arc<Session>) -> Result<()> {
         let begin = Instant::now();
         let mut time = 0.0;
+        let mut waited = None;
         for beat in session.cursor() {
             match beat {
                 Beat::Frame(frame) => {
@@ -61,12 +62,22 @@ impl Performer {
                     // A press that is held or doubled has its own time.
                     let calm = matches!(
                         session.steps()[frame.step],
-                        Step::Move { .. } | Step::Both { .. } | Step::Slide { .. } | Step::Wait(_)
+                        Step::Move { .. } | Step::Both { .. } | Step::Slide { .. }
                     );
                     time += frame.dt.as_secs_f64() / if calm { FASTER } else { 1.0 };
+                    if matches!(session.steps()[frame.step], Step::Wait(_))
+                        && waited != Some(frame.step)
+                    {
+                        // What is waited for in a session is a matter of frames as well.
+                        waited = Some(frame.step);
+                        self.settle(app)?;
+                        self.frames(app, 6)?;
+                    }
                     let at = |e: anyhow::Error| e.context(session.place(frame.step).to_string());
                     if self.presses(&frame.input) {
                         self.settle(app).map_err(at)?;
+                        // What lies at the hand is found in the frame after it is there.
+                        self.frames(app, 2)?;
                         self.hold(&frame.input);
                         self.rig.send()?;
                         self.arrived(app, "buttons").map_err(at)?;
@@ -112,6 +123,15 @@ impl Performer {
     pub fn settle(&mut self, app: &mut App) -> Result<()> {
         self.rig.send()?;
         self.arrived(app, "hands")
+    }
+
+    /// Waits until the app has drawn so many more.
+    pub fn frames(&mut self, app: &mut App, count: u64) -> Result<()> {
+        let until = app.now["frame"].as_u64().unwrap_or(0) + count;
+        app.until("frames go on", 20.0, |now| {
+            now["frame"].as_u64().unwrap_or(0) >= until
+        })?;
+        Ok(())
     }
 
     fn arrived(&mut self, app: &mut App, what: &str) -> Result<()> {
