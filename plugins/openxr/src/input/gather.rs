@@ -67,6 +67,8 @@ pub(super) fn gather(
     }
     before.lets_go = LETS_GO;
     hands.metres_per_world = view.scale();
+    // Hands are free: no screen says how near is near.
+    hands.pixel = 0.0;
     let (Some(mut input), Some(session), Some(state)) = (input, session, state) else {
         hands.frames = [HandFrame::default(); 2];
         return;
