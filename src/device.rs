@@ -5,6 +5,7 @@ use bevy::prelude::*;
 use bevy::render::error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy};
 use bevy::render::renderer::RenderDevice;
 use bevy::render::settings::RenderCreation;
+use bevy::render::{Render, RenderApp, RenderSystems};
 use midair_studio::notice::Notices;
 
 /// So often is drawing begun anew within [`WHILE`] seconds before it is given up.
@@ -44,13 +45,44 @@ fn answer(error: &RenderError, main: &mut World, _: &mut World) -> RenderErrorPo
 
 /// Takes the card away after so many frames, as a test.
 pub(crate) fn lose_after(app: &mut App, frames: u32) {
+    let Some(render) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
     let mut frame = 0;
-    app.add_systems(Update, move |device: Option<Res<RenderDevice>>| {
+    let lose = move |device: Option<Res<RenderDevice>>| {
         frame += 1;
         if frame == frames
             && let Some(device) = &device
         {
             device.wgpu_device().destroy();
         }
-    });
+    };
+    render.add_systems(Render, lose.in_set(RenderSystems::PostCleanup));
+}
+
+/// A card that goes away in the middle of a frame makes the graphics library panic: whether a panic says so.
+pub(crate) fn is_loss(said: &str) -> bool {
+    let of_the_library = said.contains("Validation Error") || said.contains("wgpu error");
+    let lost = [
+        "is invalid",
+        "has been destroyed",
+        "device is lost",
+        "Parent device",
+    ];
+    of_the_library && lost.iter().any(|sign| said.contains(sign))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_loss;
+
+    #[test]
+    fn the_words_of_the_graphics_library_are_known() {
+        let said = "Error in Buffer::get_mapped_range: Validation Error\n\nCaused by:\n  \
+                    Buffer with 'LineGizmo Strip Position Buffer' label is invalid\n";
+        assert!(is_loss(said));
+        assert!(!is_loss(
+            "index out of bounds: the len is 3 but the index is 7"
+        ));
+    }
 }

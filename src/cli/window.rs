@@ -102,6 +102,14 @@ fn say_when_nothing_draws() {
             );
             std::process::exit(1);
         }
+        // Drawing cannot begin anew from within a frame; the journal has every step.
+        if device::is_loss(said) {
+            eprintln!(
+                "midair: the graphics card was lost in the middle of a frame, so the window closes. Your work \
+                 is kept: start Midair again and press Restore it"
+            );
+            std::process::exit(1);
+        }
         usual(panic);
     }));
 }

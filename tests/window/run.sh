@@ -53,6 +53,13 @@ DISPLAY=:$(cat "$home/display")
 export DISPLAY
 unset WAYLAND_DISPLAY
 
+# A card that is lost: one clear line, and what was done is offered at the next start.
+status=0
+timeout 90 "$midair" --lose-card 40 >/dev/null 2>"$home/none" || status=$?
+[ $status -eq 1 ] && [ "$(grep -c '^midair: the graphics card' "$home/none")" -eq 1 ] &&
+  ! grep -q panicked "$home/none" || fail "a lost card: $status, $(cat "$home/none")"
+pass "a lost graphics card is one line and status 1"
+
 # Without anything that draws: one clear line, status 1.
 status=0
 VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent WGPU_BACKEND=vulkan \
