@@ -37,6 +37,14 @@ impl Files {
         self.open.is_some()
     }
 
+    /// What is asked.
+    pub fn title(&self) -> &'static str {
+        match &self.open {
+            Some((dialog, _)) => title(*dialog),
+            None => "Files",
+        }
+    }
+
     /// Gives the question up.
     pub fn close(&mut self) {
         self.open = None;
@@ -54,7 +62,9 @@ impl Files {
             .ancestors()
             .find(|f| f.is_dir())
             .map_or_else(|| PathBuf::from("."), Into::into);
-        let base = FileDialog::new().initial_directory(folder);
+        let base = FileDialog::new()
+            .title(title(dialog))
+            .initial_directory(folder);
         let base = match self.fills {
             None => base.as_modal(true),
             Some(part) => base
@@ -64,28 +74,22 @@ impl Files {
                 .min_size(part.size() - FRAME)
                 .max_size(part.size() - FRAME)
                 .title_bar(false)
-                .movable(false)
-                .resizable(false),
+                .movable(false),
         };
         let mut shown = match dialog {
             Dialog::Open => base
-                .title("Open a document")
                 .add_file_filter_extensions("Midair documents", vec!["midair"])
                 .default_file_filter("Midair documents"),
             Dialog::Import => base
-                .title("Bring meshes into the library")
                 .add_file_filter_extensions(
                     "Meshes: GLB, OBJ, STL, PLY",
                     vec!["glb", "gltf", "obj", "stl", "ply"],
                 )
                 .default_file_filter("Meshes: GLB, OBJ, STL, PLY"),
             Dialog::Reference => base
-                .title("Pictures to work from")
                 .add_file_filter_extensions("Pictures: PNG, JPEG", PICTURES.into())
                 .default_file_filter("Pictures: PNG, JPEG"),
-            Dialog::SaveAs => base
-                .title("Save the document as")
-                .default_file_name(&format!("{}.midair", project.title())),
+            Dialog::SaveAs => base.default_file_name(&format!("{}.midair", project.title())),
         };
         match dialog {
             Dialog::Open => shown.pick_file(),
@@ -128,6 +132,15 @@ impl Files {
                 })
             }
         })
+    }
+}
+
+fn title(dialog: Dialog) -> &'static str {
+    match dialog {
+        Dialog::Open => "Open a document",
+        Dialog::SaveAs => "Save the document as",
+        Dialog::Import => "Bring meshes into the library",
+        Dialog::Reference => "Pictures to work from",
     }
 }
 

@@ -107,7 +107,14 @@ pub(super) fn show(ui: &mut Ui, id: BoardId, stage: &mut Stage) -> Shown {
             info.map_or_else(Shown::default, |info| registered(ui, &info, stage))
         }
         BoardId::Files => {
-            let (pressed, _) = framed(ui, icon::FOLDER_OPEN, "Files", true, false, |_| {});
+            let (pressed, _) = framed(
+                ui,
+                icon::FOLDER_OPEN,
+                stage.files.title(),
+                true,
+                false,
+                |_| {},
+            );
             stage.asks.extend(stage.files.show(ui.ctx()));
             Shown {
                 close: pressed.close,

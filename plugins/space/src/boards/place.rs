@@ -10,9 +10,9 @@ use super::{AWAY, Anchor, Board, Boards};
 use crate::room::{Stance, facing};
 
 /// Metres that boards stand below the eyes.
-const BELOW: f32 = 0.16;
+const BELOW: f32 = 0.04;
 /// Metres from a hand to the middle of its board, outwards, up and back, as the hand is held level.
-const WRIST: Vec3 = Vec3::new(0.17, 0.06, 0.04);
+const WRIST: Vec3 = Vec3::new(0.16, -0.03, 0.06);
 /// How much of a wrist must be turned to the eyes to show its board, and to go on showing it.
 const TURNED: [f32; 2] = [0.45, 0.25];
 /// Seconds in which a board opens.
@@ -28,11 +28,12 @@ pub(super) fn spot(
 ) -> Pose {
     // Degrees to the side of the hand that does not lead.
     let (angles, lower): (&[f32], f32) = match dock {
-        Dock::Left => (&[40.0, 80.0, -42.0, -82.0], 0.0),
-        Dock::Right => (&[-42.0, -84.0, 42.0, 84.0], 0.0),
-        Dock::Corner => (&[22.0, -22.0, 62.0, -62.0], 0.22),
-        Dock::Window => (&[0.0, 36.0, -36.0, 72.0, -72.0], 0.0),
-        Dock::Modal => (&[0.0], 0.0),
+        Dock::Left => (&[34.0, 70.0, -36.0, -72.0], 0.0),
+        Dock::Right => (&[-36.0, -72.0, 36.0, 72.0], 0.0),
+        // Over the work, where it can be read and nothing is covered.
+        Dock::Corner => (&[0.0, -34.0, 34.0], -0.14),
+        Dock::Window => (&[0.0, 36.0, -36.0, 72.0, -72.0], 0.06),
+        Dock::Modal => (&[0.0], 0.08),
     };
     let outwards = match off {
         Side::Left => 1.0,
