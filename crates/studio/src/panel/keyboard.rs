@@ -74,14 +74,15 @@ impl Keyboard {
 /// Draws it; says which key was clicked. `names` are what presses, erases, types a space and ends.
 pub fn keyboard(ui: &mut Ui, state: &Keyboard, names: [&str; 4]) -> Option<Key> {
     let mut clicked = None;
-    let chosen = state.key();
+    // Only where something presses the key one is on; a wand points.
+    let chosen = (!names[0].is_empty()).then(|| state.key());
     ui.spacing_mut().item_spacing = Vec2::splat(GAP);
     for row in ROWS {
         ui.horizontal(|ui| {
             for letter in row.chars() {
                 let key = state.letter(letter);
                 if let Key::Letter(shown) = key
-                    && cap(ui, &shown.to_string(), SIDE, key == chosen)
+                    && cap(ui, &shown.to_string(), SIDE, chosen == Some(key))
                 {
                     clicked = Some(key);
                 }
@@ -100,7 +101,7 @@ pub fn keyboard(ui: &mut Ui, state: &Keyboard, names: [&str; 4]) -> Option<Key> 
                 Key::Erase => format!("{}  {erase}", icon::BACKSPACE),
                 _ => format!("{}  {done}", icon::CHECK),
             };
-            if cap(ui, text.trim(), width, key == chosen) {
+            if cap(ui, text.trim(), width, chosen == Some(key)) {
                 clicked = Some(key);
             }
         }

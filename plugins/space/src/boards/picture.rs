@@ -13,6 +13,7 @@ use bevy::render::renderer::RenderDevice;
 use bevy::render::{Render, RenderApp, RenderSystems};
 use bevy_egui::render::systems::EguiPipelines;
 use bevy_egui::{EguiGlobalSettings, EguiOutput, EguiPlugin, EguiRenderOutput};
+use bevy_mod_outline::OutlineStencil;
 use midair_studio::panel::egui;
 
 use super::content::TALLEST;
@@ -171,6 +172,8 @@ fn quad(world: &mut World, board: &mut Board) {
         MeshMaterial3d(ink),
         NotShadowCaster,
         NotShadowReceiver,
+        // Lines around what is selected behind it do not show through.
+        OutlineStencil::default(),
         Transform::default(),
         ChildOf(root),
     ));
