@@ -340,6 +340,24 @@ fn a_grip_on_nothing_and_the_stick_turn_the_world_in_steps() {
 }
 
 #[test]
+fn who_has_one_hand_finds_what_the_wrist_has_before_the_body() {
+    let mut studio = worn();
+    studio.input().side(Side::Left).pose = None;
+    studio.frames(200);
+    let board = boards(&studio).get(WRIST).unwrap();
+    let eyes = studio.world().resource::<Stance>().head.position;
+    assert!(board.shown);
+    assert!((0.5..=0.7).contains(&board.pose.position.distance(eyes)));
+    let button = library_button(&studio);
+    click(&mut studio, WRIST, &button);
+    assert!(is_open(&studio, "library"));
+    studio.put(Side::Left, Pose::at(Vec3::new(-0.22, 1.15, 0.1)));
+    studio.frames(3);
+    let board = boards(&studio).get(WRIST).unwrap();
+    assert!(board.pose.position.x < -0.2, "back on the wrist");
+}
+
+#[test]
 fn one_hand_alone_moves_the_world_where_that_is_set() {
     let mut studio = worn();
     let pose = Pose::at(Vec3::new(0.3, 0.7, 0.1));

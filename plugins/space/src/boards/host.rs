@@ -20,6 +20,8 @@ use crate::room::Stance;
 
 /// Seconds after which a board is laid out again though nothing seems to have happened.
 const IDLE: f64 = 0.3;
+/// Seconds after which a hand that is not seen counts as none.
+const MISSED: f32 = 1.5;
 /// The least that a board is tall, in points.
 const LOWEST: f32 = 140.0;
 
@@ -30,6 +32,7 @@ pub(crate) fn arrange(
     settings: Res<Settings>,
     (dialogs, project): (Res<Dialogs>, Res<Project>),
     (stance, ring, time): (Res<Stance>, Res<Ring>, Res<Time>),
+    mut missed: Local<f32>,
 ) {
     let boards = boards.bypass_change_detection();
     if let Some((number, dialog)) = dialogs.after(boards.seen) {
@@ -110,11 +113,26 @@ pub(crate) fn arrange(
             }
         }
     }
+    // Somebody with one hand has no wrist to look at.
+    *missed = if stance.tracked[off as usize] {
+        0.0
+    } else {
+        *missed + time.delta_secs()
+    };
+    let alone = *missed > MISSED && stance.tracked[off.other() as usize];
+    let pinned = boards.pinned;
     for board in boards.all.values_mut() {
         board.scale = 1e-3 * DMM_PER_POINT * AWAY * scale;
-        if board.id == BoardId::Wrist && !boards.pinned {
-            // The other hand leads: it changes sides.
-            board.anchor = Anchor::Hand(off);
+        if board.id == BoardId::Wrist && !pinned {
+            // When the other hand leads it changes sides.
+            match (alone, board.anchor) {
+                (true, Anchor::Hand(_)) => {
+                    board.anchor = Anchor::Room;
+                    board.pose = place::low(&stance);
+                }
+                (true, _) => {}
+                (false, _) => board.anchor = Anchor::Hand(off),
+            }
         }
         if board.id == BoardId::Ring && ring.is_changed() {
             board.stale = true;

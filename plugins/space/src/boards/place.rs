@@ -64,6 +64,16 @@ pub(super) fn spot(
     }
 }
 
+/// Before the body, below the work: what would hang on a wrist that is not there.
+pub(super) fn low(stance: &Stance) -> Pose {
+    let eyes = stance.head.position;
+    let position = eyes + 0.45 * stance.ahead() - 0.42 * Vec3::Y;
+    Pose {
+        position,
+        rotation: facing(position, eyes),
+    }
+}
+
 /// Around a hand.
 pub(super) fn at_hand(hand: Vec3, stance: &Stance) -> Pose {
     let eyes = stance.head.position;
