@@ -91,7 +91,7 @@ pub(crate) fn arrange(
             .all
             .values()
             .filter(|b| b.open && !b.fresh && b.anchor == Anchor::Room)
-            .map(|b| (b.pose.position, 0.5 * b.metres().length()))
+            .map(|b| (b.pose.position, 0.5 * b.metres().x))
             .collect();
         let typing = boards.typing;
         let Some(board) = boards.all.get_mut(&id) else {

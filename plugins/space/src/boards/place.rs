@@ -45,12 +45,12 @@ pub(super) fn spot(
         let turn = Quat::from_rotation_y((angle * outwards).to_radians());
         eyes + turn * ahead * AWAY - (BELOW + lower) * Vec3::Y
     };
-    let radius = 0.5 * size.length();
+    let radius = 0.5 * size.x;
     let free = |place: &Vec3| {
-        // Boards may overlap by a corner.
+        // Side by side; boards may overlap by an edge.
         taken
             .iter()
-            .all(|(other, r)| other.distance(*place) > 0.75 * (r + radius))
+            .all(|(other, r)| other.distance(*place) > 0.95 * (r + radius))
     };
     let place = angles.iter().map(at).find(free);
     let position = place.unwrap_or_else(|| {
@@ -211,7 +211,7 @@ mod tests {
             for (other, _) in &taken {
                 assert!(pose.position.distance(*other) > 0.2, "{dock:?}");
             }
-            taken.push((pose.position, 0.5 * size.length()));
+            taken.push((pose.position, 0.5 * size.x));
         }
         // The library stands at the side of the hand that does not lead.
         assert!(taken[0].0.x < stance.head.position.x);
