@@ -167,7 +167,13 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
             ));
         }
         Stage::HeadsetAlone => {
-            app.add_plugins((RoomPlugin, KeepPlugin, KeepSettingsPlugin));
+            app.add_plugins((
+                RoomPlugin,
+                SpacePlugin,
+                GuidePlugin,
+                KeepPlugin,
+                KeepSettingsPlugin,
+            ));
         }
         Stage::Picture => {
             app.add_plugins(RoomPlugin);

@@ -36,6 +36,8 @@ const LISTED: usize = 400;
 #[derive(Default)]
 pub(crate) struct BrushPanel {
     textures: HashMap<RecipeHash, TextureHandle>,
+    /// Where those pictures are: each host has its own.
+    host: Option<egui::Context>,
     /// What is typed to find a brush.
     query: String,
     /// A weight while its slider is dragged.
@@ -282,6 +284,10 @@ impl BrushPanel {
         name: &str,
         recipe: &Recipe,
     ) -> Option<egui::TextureId> {
+        if self.host.as_ref() != Some(ui.ctx()) {
+            self.textures.clear();
+            self.host = Some(ui.ctx().clone());
+        }
         if let Some(texture) = self.textures.get(&recipe.hash()) {
             return Some(texture.id());
         }

@@ -2,8 +2,10 @@
 //! letting go takes it.
 
 use bevy::prelude::*;
+use midair_studio::carry::in_hands;
 use midair_studio::command::Command;
 use midair_studio::hands::{Action, Hands, Haptic, Side};
+use midair_studio::hold::Held;
 use midair_studio::panel;
 use midair_studio::tools::Tools;
 
@@ -45,7 +47,7 @@ impl Ring {
 
 pub(crate) fn turn(
     (mut hands, tools): (ResMut<Hands>, Res<Tools>),
-    stance: Res<Stance>,
+    (stance, held): (Res<Stance>, Res<Held>),
     mut ring: ResMut<Ring>,
     mut commands: MessageWriter<Command>,
 ) {
@@ -83,7 +85,15 @@ pub(crate) fn turn(
     // A press of cancel takes the choice back.
     let meant = open.chosen.filter(|_| !hand.held(Action::Cancel));
     if let Some(tool) = meant.and_then(|i| tools.all().get(i)) {
-        commands.write(Command::Mode(tool.id.clone()));
+        // What a hand holds goes along.
+        commands.write(if held.is_empty() {
+            Command::Mode(tool.id.clone())
+        } else {
+            Command::Carry {
+                objects: in_hands(&held),
+                to: tool.id.clone(),
+            }
+        });
         hands.pulse(open.side, Haptic::Done);
     }
 }
