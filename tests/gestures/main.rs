@@ -23,6 +23,7 @@ mod preview;
 mod references;
 mod room;
 mod scaffold;
+mod scaffold_flat;
 mod sequence;
 mod shapes;
 mod small;

@@ -1,37 +1,12 @@
-//! What Scaffold says of its phase: what is touched and selected, and what each button does now.
+//! What Scaffold says of its phase: what each button does now.
 
 use bevy::prelude::*;
 use midair_studio::hands::{Action, Side};
 use midair_studio::pick::Touch;
-use midair_studio::project::{Project, Selection};
 use midair_studio::settings::{Draws, Settings};
-use midair_studio::show::{Cues, Tint};
 use midair_studio::tools::Hints;
 
 use crate::phase::{Draft, Phase};
-
-pub(crate) fn colours(
-    project: Res<Project>,
-    touch: Res<Touch>,
-    selection: Res<Selection>,
-    mut cues: ResMut<Cues>,
-) {
-    let mut next = Cues::default();
-    for (id, object) in project.document().objects() {
-        if object.fresh {
-            next.entry(id).tint = Tint::Fresh;
-        }
-    }
-    for touched in Side::BOTH.iter().filter_map(|&s| touch.get(s)) {
-        next.entry(touched.object).touched = true;
-    }
-    for &object in &selection.0 {
-        next.entry(object).selected = true;
-    }
-    if *cues != next {
-        *cues = next;
-    }
-}
 
 pub(crate) fn hints(
     settings: Res<Settings>,

@@ -211,7 +211,7 @@ struct Gesture {
 
 fn begin(hands: &Hands, settings: &Settings, draft: &mut Draft) {
     for (side, hand) in hands.both() {
-        if !hand.pressed(Action::Act) || !hand.tracked {
+        if !hand.pressed(Action::Act) || hand.held(Action::Grab) || !hand.tracked {
             continue;
         }
         let at = hand.pose.position.as_dvec3();

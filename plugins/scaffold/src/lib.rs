@@ -4,7 +4,9 @@
 //! are corrected when they are let go, and what was drawn is kept beside what became of it. Lines and strokes are
 //! objects of the document; what a hand is in the middle of lives here.
 
+mod aim;
 mod ask;
+mod carry;
 mod cue;
 mod draw;
 mod history;
@@ -47,6 +49,7 @@ impl Plugin for ScaffoldPlugin {
         .init_resource::<history::Writing>()
         .add_panel(panel::INFO, panel::ScaffoldPanel::default())
         .add_observer(abort)
+        .add_observer(carry::carried)
         .add_systems(Update, history::collect.in_set(StudioSet::Gather))
         // What is asked by name is carried out whichever mode is in the hands: a plate can be filled from Assemble.
         .add_systems(Update, ask::ask.in_set(StudioSet::Ask).after(FollowDrawing))
@@ -55,7 +58,7 @@ impl Plugin for ScaffoldPlugin {
             (
                 (draw::turn, draw::draw).chain().in_set(StudioSet::Act),
                 (
-                    cue::colours,
+                    aim::aim,
                     cue::hints,
                     show::words,
                     show::lines.run_if(resource_exists::<GizmoConfigStore>),

@@ -91,7 +91,7 @@ impl Look {
         };
         // Thin lines have no light and shade.
         if let Some(ink) = self.ink.filter(|ink| !ink.stroke) {
-            let alpha = if ink.dimmed { 0.22 } else { 0.9 };
+            let alpha = if ink.dimmed || self.ghost { 0.22 } else { 0.9 };
             return StandardMaterial {
                 base_color: base.with_alpha(if self.touched || self.selected {
                     1.0
