@@ -207,10 +207,10 @@ def figure5(folder):
     s.say("A rounded square through the tick marks.")
     s.stroke(rounded(x - h, x + h, y - h, y + h, z, 0.09), wobble=0.006)
     x, y, z = places[2]
-    s.say("An S from corner to corner, through the middles of two sides.")
-    up = s.arc((x, y + 0.1, z), (0.17, 0, 0), (0, 0.1, 0), 0.35, math.pi * 1.5)
-    down = s.arc((x, y - 0.1, z), (0.17, 0, 0), (0, 0.1, 0), math.pi / 2, -math.pi + 0.35)
-    s.stroke([(x + h, y + h, z)] + up[8:] + down[1:-8] + [(x - h, y - h, z)], wobble=0.006)
+    s.say("An S, along the middles of the upper and the lower side.")
+    up = s.arc((x, y + 0.1, z), (0.1, 0, 0), (0, 0.1, 0), 0.2, math.pi * 1.5)
+    down = s.arc((x, y - 0.1, z), (0.1, 0, 0), (0, 0.1, 0), math.pi / 2, -math.pi + 0.2)
+    s.stroke(up + down[1:], wobble=0.005)
     x, y, z = places[3]
     s.say("A spiral in from a corner.")
     spiral = [(x + (0.24 - 0.2 * i / 90) * math.cos(math.pi / 4 + i * 0.075), y + (0.24 - 0.2 * i / 90) * math.sin(math.pi / 4 + i * 0.075), z) for i in range(91)]

@@ -40,6 +40,8 @@ pub struct Fitted {
 /// Samples of the curvature per segment (§4.2.2 asks for one at least).
 const SAMPLES: usize = 10;
 const MOST_STEPS: usize = 60;
+/// No tangent is longer than so many chords of its segment.
+const MOST_CHORDS: f64 = 4.0;
 /// Tangent magnitudes to begin with, as shares of the chords; the first is the paper's.
 const STARTS: [f64; 4] = [1.0 / 3.0, 0.55, 0.2, 0.9];
 /// Steps from each start, after which only the best …
@@ -70,20 +72,32 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
         };
     }
     let mut measure = Measure::new(curve, count.max(6));
+    let free: Vec<bool> = (0..curve.segments())
+        .map(|i| !is_straight(curve, i))
+        .collect();
+    let room = Room {
+        chords: &chords,
+        free: &free,
+    };
     // Begun as the paper does and in other ways: the valleys are many, and the nearest is not the deepest.
     let mut tries: Vec<Descent> = STARTS
         .iter()
         .map(|share| {
-            let x = chords.iter().flat_map(|c| [c * share; 2]).collect();
+            let share = |i: usize| if free[i] { *share } else { 1.0 / 3.0 };
+            let x = chords
+                .iter()
+                .enumerate()
+                .flat_map(|(i, c)| [c * share(i); 2]);
+            let x = x.collect();
             let mut descent = Descent::new(x, &mut measure);
-            descent.run(FIRST_STEPS, &chords, &mut measure);
+            descent.run(FIRST_STEPS, &room, &mut measure);
             descent
         })
         .collect();
     tries.sort_by(|a, b| a.value.total_cmp(&b.value));
     tries.truncate(LAST);
     for descent in &mut tries {
-        descent.run(MOST_STEPS, &chords, &mut measure);
+        descent.run(MOST_STEPS, &room, &mut measure);
     }
     tries.sort_by(|a, b| a.value.total_cmp(&b.value));
     let Descent {
@@ -103,6 +117,20 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
         variation: value,
         steps,
     }
+}
+
+/// Whether a segment is straight whatever its magnitudes: they would run it past its ends and back.
+fn is_straight(curve: &Curve, segment: usize) -> bool {
+    let (q, d) = (&curve.points[segment..], &curve.tangents[segment..]);
+    let along = (q[1] - q[0]).normalize_or_zero();
+    along.dot(d[0]) > 1.0 - 1e-9 && along.dot(d[1]) > 1.0 - 1e-9
+}
+
+/// What magnitudes may become.
+struct Room<'a> {
+    chords: &'a [f64],
+    /// Segments whose magnitudes mean something.
+    free: &'a [bool],
 }
 
 /// Levenberg–Marquardt from one start, to be gone on with.
@@ -125,18 +153,20 @@ impl Descent {
         }
     }
 
-    fn run(&mut self, most: usize, chords: &[f64], measure: &mut Measure) {
+    fn run(&mut self, most: usize, room: &Room, measure: &mut Measure) {
         let mut trial = self.x.clone();
         while self.steps < most && !self.done {
             self.steps += 1;
             let (residuals, jacobian) = measure.linearised(&self.x);
             let matrix = jacobian.tr_mul(&jacobian);
             let gradient = jacobian.tr_mul(&residuals);
+            // A magnitude that says nothing is not moved far.
+            let least = 1e-6 * matrix.diagonal().max() + 1e-12;
             let mut gained = None;
             for _ in 0..12 {
                 let mut damped = matrix.clone();
                 for i in 0..trial.len() {
-                    damped[(i, i)] += self.damping * (matrix[(i, i)] + 1e-12);
+                    damped[(i, i)] += self.damping * (matrix[(i, i)] + least);
                 }
                 let step: Option<DVector<f64>> = damped.cholesky().map(|c| c.solve(&gradient));
                 let Some(step) = step else {
@@ -144,9 +174,13 @@ impl Descent {
                     continue;
                 };
                 for i in 0..trial.len() {
-                    // A tangent never turns round and never outgrows its segment tenfold.
-                    let chord = chords[i / 2];
-                    trial[i] = (self.x[i] - step[i]).clamp(0.01 * chord, 10.0 * chord);
+                    // A tangent never turns round and never outgrows its segment.
+                    let chord = room.chords[i / 2];
+                    trial[i] = if room.free[i / 2] {
+                        (self.x[i] - step[i]).clamp(0.01 * chord, MOST_CHORDS * chord)
+                    } else {
+                        self.x[i]
+                    };
                 }
                 let next = measure.value(&trial);
                 if next < self.value {

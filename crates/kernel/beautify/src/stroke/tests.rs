@@ -167,3 +167,55 @@ fn the_fit_never_gets_worse_than_where_it_began() {
         assert!(fitted.magnitudes.iter().all(|m| m.is_finite() && *m > 0.0));
     }
 }
+
+#[test]
+fn a_rounded_square_follows_its_sides_and_never_runs_past_them() {
+    let h = 0.2;
+    let c = [(-h, -h), (h, -h), (h, h), (-h, h)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    let mut scaffold = Scaffold::default();
+    for i in 0..4 {
+        let (a, b) = (c[i], c[(i + 1) % 4]);
+        scaffold.lines.push(Line::new(a, b));
+        scaffold.ticks.extend([a.lerp(b, 0.225), a.lerp(b, 0.775)]);
+    }
+    let r = 0.09;
+    let mut drawn = vec![DVec3::new(0.0, -h, 0.0)];
+    for (x, y, from) in [
+        (1.0, -1.0, -0.5),
+        (1.0, 1.0, 0.0),
+        (-1.0, 1.0, 0.5),
+        (-1.0, -1.0, 1.0),
+    ] {
+        for i in 0..=8 {
+            let a = std::f64::consts::PI * (from + f64::from(i) / 16.0);
+            drawn.push(DVec3::new(
+                x * (h - r) + r * a.cos(),
+                y * (h - r) + r * a.sin(),
+                0.0,
+            ));
+        }
+    }
+    drawn.push(drawn[0]);
+    let line = Polyline::new(drawn).spaced(0.01);
+    let mut random = crate::line::tests::Random::new(31);
+    let wobbling: Vec<DVec3> = line.iter().map(|p| *p + random.within(0.004)).collect();
+    let Fair::Curve {
+        spline,
+        closed,
+        keypoints,
+    } = fair_stroke(&wobbling, &scaffold, &StrokeOptions::default())
+    else {
+        panic!("a curve");
+    };
+    assert!(closed);
+    assert!(
+        keypoints.iter().filter(|k| k.along_line).count() >= 12,
+        "{keypoints:?}"
+    );
+    let shown = spline.flattened(32);
+    for p in shown.points() {
+        assert!(p.x.abs().max(p.y.abs()) < h + 2e-3, "{p}");
+        assert!(straight::to_polyline(*p, &line) < 0.012, "{p}");
+    }
+    assert!(shown.length() < 1.03 * Polyline::new(line).length());
+}
