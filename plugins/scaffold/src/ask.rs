@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use midair_beautify::{Line, LineOptions, StrokeOptions};
-use midair_document::{ConstructionLine, DrawnStroke, Edit, Kind, Object, ObjectId, affine};
+use midair_document::{
+    ConstructionLine, DrawnStroke, Edit, Kind, LineReading, Object, ObjectId, StrokeReading, affine,
+};
 use midair_solid::plate;
 use midair_studio::command::Command;
 use midair_studio::drawing::Drawing;
@@ -202,16 +204,24 @@ fn again(
     commit("Correct again", changed, project, notices);
 }
 
-/// Tick marks and width are not the correction's.
+/// Tick marks and width are not the correction's, and what it was told first is what it is measured by.
 fn with_what_it_has(kind: Kind, object: &Object) -> Kind {
     match (kind, &object.kind) {
         (Kind::Line(new), Kind::Line(old)) => Kind::Line(ConstructionLine {
             ticks: old.ticks.clone(),
+            reading: LineReading {
+                auto: new.reading.auto,
+                ..old.reading
+            },
             ..new
         }),
         (Kind::Stroke(new), Kind::Stroke(old)) => Kind::Stroke(
             DrawnStroke {
                 width: old.width,
+                reading: StrokeReading {
+                    auto: new.reading.auto,
+                    ..old.reading
+                },
                 ..(*new).clone()
             }
             .into(),
@@ -227,7 +237,7 @@ fn readings_again(
     set: &ScaffoldSettings,
     drawing: &Drawing,
 ) -> Option<(Vec<Reading>, bool)> {
-    let strength = if strength.is_finite() {
+    let strength = if strength.is_finite() && strength > 0.0 {
         strength.clamp(0.05, 10.0)
     } else {
         1.0

@@ -106,14 +106,18 @@ pub(crate) fn as_it_stands(kind: &Kind, object: &Object) -> Kind {
 /// After an undo, a move or anything else that changed what was drawn last: which reading it is now.
 pub(crate) fn recognise(project: &Project, draft: &mut Draft) {
     let Some(last) = &mut draft.last else { return };
-    let found = project.document().object(last.id).and_then(|object| {
-        let is = |r: &Reading| as_it_stands(&r.kind, object) == object.kind;
-        (object.placement == Placement::IDENTITY)
-            .then(|| last.readings.iter().position(is))
-            .flatten()
-    });
-    match found {
-        Some(chosen) => last.chosen = chosen,
-        None => draft.last = None,
+    let Some(object) = project.document().object(last.id) else {
+        draft.last = None;
+        return;
+    };
+    if object.placement != Placement::IDENTITY {
+        // Moved away its readings are elsewhere.
+        draft.last = None;
+        return;
+    }
+    let is = |r: &Reading| as_it_stands(&r.kind, object) == object.kind;
+    // A length that was set is none of them: it stays what is spoken of.
+    if let Some(chosen) = last.readings.iter().position(is) {
+        last.chosen = chosen;
     }
 }
