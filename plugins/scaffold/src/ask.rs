@@ -172,7 +172,7 @@ fn commit(
     let edits = changed
         .into_iter()
         .map(|(id, kind)| Edit::SetKind { id, kind });
-    project.commit(name, edits, notices);
+    project.commit_live(name, edits, notices);
 }
 
 /// Corrects once more from what was drawn.
@@ -400,7 +400,7 @@ pub(crate) fn fill(
             let id = ObjectId(document.next_id());
             let object = Object::solid(format!("Plate {id}"), recipe).placed(placement);
             let object = object.into();
-            let done = project.commit("Fill", [Edit::Add { id, object }], notices);
+            let done = project.commit_live("Fill", [Edit::Add { id, object }], notices);
             done.then_some(id)
         }
         Err(fault) => {
@@ -422,5 +422,5 @@ fn group(project: &mut Project, notices: &mut Notices) {
         return;
     }
     let edit = document.group_edit("Scaffold", &lines);
-    project.commit("Group scaffold", [edit], notices);
+    project.commit_live("Group scaffold", [edit], notices);
 }

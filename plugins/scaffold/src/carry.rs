@@ -71,5 +71,5 @@ pub(crate) fn carried(
         }
         edits.push(Edit::SetDimmed { id, dimmed: true });
     }
-    project.commit("Box as scaffold", edits, &mut notices);
+    project.commit_live("Box as scaffold", edits, &mut notices);
 }

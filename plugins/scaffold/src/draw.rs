@@ -392,5 +392,5 @@ pub(crate) fn tick(id: ObjectId, at: f64, project: &mut Project, notices: &mut N
     let place = line.ticks.partition_point(|&t| t < at);
     line.ticks.insert(place, at);
     let kind = Kind::Line(line);
-    project.commit("Tick mark", [Edit::SetKind { id, kind }], notices)
+    project.commit_live("Tick mark", [Edit::SetKind { id, kind }], notices)
 }

@@ -35,7 +35,7 @@ pub(crate) fn add(
         _ => (format!("Stroke {id}"), "Draw stroke"),
     };
     let object = Object::new(name, reading.kind.clone()).into();
-    if !project.commit(step, [Edit::Add { id, object }], notices) {
+    if !project.commit_live(step, [Edit::Add { id, object }], notices) {
         return false;
     }
     draft.last = Some(Last {
@@ -77,7 +77,7 @@ pub(crate) fn choose(
     };
     let kind = as_it_stands(&reading.kind, object);
     let words = reading.words.clone();
-    let done = project.commit("Other reading", [Edit::SetKind { id, kind }], notices);
+    let done = project.commit_live("Other reading", [Edit::SetKind { id, kind }], notices);
     if done {
         notices.info(format!("Read as {words}."));
         last.chosen = to;
