@@ -13,7 +13,7 @@ use crate::hands::Hands;
 use crate::project::Project;
 
 /// Metres from the middle of a construction line to its side, as a hand sees it.
-const THIN: f64 = 0.0011;
+const THIN: f64 = 0.0015;
 /// Metres from a keypoint to the tips of its mark.
 const TICK: f64 = 0.0045;
 /// Flat sides around a stroke.
