@@ -215,7 +215,7 @@ fn draw(
         // Of one height: the view does not jump as hints come and go.
         let marks = !world.resource::<Project>().document().pending().is_empty();
         let high = if marks { 2.0 * HINTS } else { HINTS };
-        let hints = egui::Panel::bottom("hints").exact_size(high + 8.0);
+        let hints = egui::Panel::bottom("hints").exact_size(high + 13.0);
         hints.show(&mut root, |ui| {
             ui.add_space(4.0);
             panel::operands(ui, world.resource::<Project>().document());
@@ -262,6 +262,7 @@ fn draw(
             .id(egui::Id::new(info.id))
             .title_bar(false)
             .resizable(false)
+            .default_height(room + 64.0)
             .constrain_to(view)
             .default_pos(view.center())
             .pivot(egui::Align2::CENTER_CENTER)

@@ -5,9 +5,10 @@ use bevy::input::mouse::MouseScrollUnit;
 use bevy::prelude::*;
 use midair_document::ObjectId;
 use midair_studio::hands::Side;
+use midair_studio::show::Drafts;
 
 use super::words::Act;
-use super::{BUTTONS, HOMES, KEYS, Newcomer, POINTS, THINKS};
+use super::{BUTTONS, HOMES, KEYS, Newcomer, POINTS};
 
 const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
 
@@ -18,11 +19,12 @@ pub fn begin(person: &mut Newcomer) {
 
 pub fn act(person: &mut Newcomer, act: &Act) {
     if let Act::Called(name) = act {
-        person.desk.settle();
+        person.settle();
         return person.called(name);
     }
-    person.acts += 1;
-    person.rest(THINKS);
+    if *act == Act::LetGo {
+        return;
+    }
     match act {
         Act::Press(key, _) if key == "click" => {
             person.homes(false);
@@ -32,7 +34,7 @@ pub fn act(person: &mut Newcomer, act: &Act) {
         Act::Click(name, count) => {
             for _ in 0..*count {
                 person.click_button(name);
-                person.desk.settle();
+                person.settle();
             }
         }
         Act::PointAt(word) => {
@@ -70,7 +72,7 @@ pub fn act(person: &mut Newcomer, act: &Act) {
         }
         other => panic!("a mouse does not do {other:?}"),
     }
-    person.desk.settle();
+    person.settle();
 }
 
 impl Newcomer {
@@ -122,21 +124,32 @@ impl Newcomer {
         self.rest(POINTS - 0.13);
     }
 
-    /// Up by the green arrow, in as many pulls as it takes.
+    /// Up by the green arrow, in one pull, as one who looks how high it is.
     fn lift(&mut self, id: ObjectId, up: f32) {
-        let goal = self.size(id).0.y + up;
+        let from = self.desk.stands(id);
+        let (low, high) = self.size(id);
+        let pivot = low.midpoint(high);
+        let grip = self.desk.handle(pivot, Vec3::Y);
+        self.homes(false);
+        self.desk.glide(grip);
+        self.desk.presses += 1;
+        self.desk.mouse(MouseButton::Left, true);
+        self.desk.wait(2);
+        let mut at = grip;
         for _ in 0..4 {
-            let (low, high) = self.size(id);
-            let left = goal - low.y;
-            if left.abs() < 0.02 {
-                return;
-            }
-            let pivot = low.midpoint(high);
-            let grip = self.desk.handle(pivot, Vec3::Y);
-            let there = self.desk.handle(pivot + left * Vec3::Y, Vec3::Y);
-            self.pull(grip, there);
+            let shown = self.desk.world().resource::<Drafts>();
+            let now = shown.get(id).map_or(from, |p| p.translation).y - from.y;
+            let seen = [pivot + now * Vec3::Y, pivot + up * Vec3::Y];
+            let [is, goal] = seen.map(|p| self.desk.pixel(p));
+            at += goal - is;
+            self.desk.glide(at);
         }
-        panic!("not lifted by {up}");
+        self.desk.mouse(MouseButton::Left, false);
+        self.desk.wait(3);
+        self.rest(2.0 * (POINTS + BUTTONS) - 0.7);
+        self.settle();
+        let rose = self.desk.stands(id).y - from.y;
+        assert!((rose - up).abs() < 0.02, "{rose} and not {up}");
     }
 
     fn pull(&mut self, from: Vec2, to: Vec2) {
@@ -163,7 +176,7 @@ impl Newcomer {
         let goal = self.desk.stands(id) + by;
         for round in 0..3 {
             let left = (goal - self.desk.stands(id)).with_y(0.0);
-            if left.length() < 0.01 && round > 0 {
+            if left.length() < 0.02 && round > 0 {
                 return;
             }
             self.homes(false);
@@ -185,7 +198,7 @@ impl Newcomer {
             self.desk.mouse(MouseButton::Left, false);
             self.desk.wait(3);
             self.rest(2.0 * (POINTS + BUTTONS) - 0.4);
-            self.desk.settle();
+            self.settle();
         }
         let left = (goal - self.desk.stands(id)).with_y(0.0);
         assert!(left.length() < 0.03, "{left} is left");

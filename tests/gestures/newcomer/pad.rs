@@ -6,7 +6,7 @@ use midair_document::ObjectId;
 use midair_studio::hands::Side;
 
 use super::words::Act;
-use super::{KEYS, Newcomer, THINKS};
+use super::{KEYS, Newcomer};
 
 /// Where on a thing one points, as parts of its box.
 const SPOTS: [Vec3; 8] = [
@@ -41,17 +41,15 @@ pub fn begin(person: &mut Newcomer) {
 
 pub fn act(person: &mut Newcomer, act: &Act) {
     if let Act::Called(name) = act {
-        person.desk.settle();
+        person.settle();
         return person.called(name);
     }
-    person.acts += 1;
-    person.rest(THINKS);
     match act {
         Act::Press(button, count) => {
             for _ in 0..*count {
                 person.tap(button);
             }
-            person.desk.settle();
+            person.settle();
         }
         Act::Choose(name) => person.walk_to(name),
         Act::TurnTo(button, category) => {
@@ -83,11 +81,14 @@ pub fn act(person: &mut Newcomer, act: &Act) {
             person.rest(KEYS);
         }
         Act::LetGo => {
+            if !person.desk.pad_hands().holds() {
+                return;
+            }
             for button in [Button::RightTrigger, Button::LeftTrigger2] {
                 person.desk.up(button);
             }
             person.rest(KEYS);
-            person.desk.settle();
+            person.settle();
         }
         Act::Push(place) => {
             let id = person.held();
@@ -134,7 +135,7 @@ pub fn act(person: &mut Newcomer, act: &Act) {
                 person.tap("A");
                 person.desk.wait(6);
             }
-            person.desk.settle();
+            person.settle();
         }
         other => panic!("a gamepad does not do {other:?}"),
     }

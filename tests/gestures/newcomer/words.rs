@@ -3,6 +3,8 @@
 /// What a clause asks for. Keys and buttons are named as they stand on the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Act {
+    /// A new sentence: one makes up one's mind.
+    Mind,
     /// A key or button, so many times.
     Press(String, usize),
     /// A tile or tab of the library, by its name, so many times.
@@ -53,9 +55,11 @@ pub fn acts(text: &str) -> Vec<Act> {
     for sentence in text.split(". ") {
         let sentence = sentence.trim_end_matches('.');
         let wheel = sentence.contains("wheel up");
+        let begun = acts.len();
         for clause in split(sentence) {
             let clause = clause.trim();
-            match clause_acts(clause, wheel, acts.last()) {
+            let before = acts.iter().rfind(|a| **a != Act::Mind);
+            match clause_acts(clause, wheel, before) {
                 Some(found) => acts.extend(found),
                 None => {
                     if let Some(name) = clause.strip_prefix("the ") {
@@ -67,6 +71,9 @@ pub fn acts(text: &str) -> Vec<Act> {
                     }
                 }
             }
+        }
+        if acts.len() > begun {
+            acts.insert(begun, Act::Mind);
         }
     }
     acts
@@ -128,10 +135,11 @@ fn clause_acts(clause: &str, wheel: bool, before: Option<&Act>) -> Option<Vec<Ac
             .trim_end_matches(" in the air");
         return Some(vec![Act::Press(key.to_owned(), count)]);
     }
-    if let Some(rest) = after("there ") {
-        let steps = rest
-            .split(", ")
-            .map(|s| s.trim_start_matches("then ").to_owned());
+    if let Some(rest) = after("there ")
+        && matches!(before, Some(Act::GoTo(..)))
+    {
+        let (_, names) = rest.split_once(" on ")?;
+        let steps = names.split(" and on ").map(str::to_owned);
         return Some(vec![Act::GoTo(String::new(), steps.collect())]);
     }
     if let Some(rest) = after("choose ") {
@@ -208,6 +216,11 @@ fn clause_acts(clause: &str, wheel: bool, before: Option<&Act>) -> Option<Vec<Ac
 fn what_the_tutorial_says_is_understood() {
     use Act::*;
     let s = str::to_owned;
+    let acts = |text: &str| {
+        let mut all = super::words::acts(text);
+        all.retain(|a| *a != Mind);
+        all
+    };
     assert_eq!(
         acts("Click Chair in the library, then Cushion: the seat."),
         [

@@ -39,14 +39,16 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
         let redo = named("Redo", history.redo_names().next(), "Ctrl+Shift+Z");
         let can = history.undo_len() > 0;
         let sign = icon::ARROW_COUNTER_CLOCKWISE;
-        let button = ui.add_enabled_ui(can, |ui| kit::icon_button(ui, sign, &undo, false));
-        if button.inner.clicked() {
+        let button = egui::Button::new(egui::RichText::new(sign).size(18.0));
+        let button = ui.add_enabled(can, button.frame_when_inactive(false));
+        if button.on_hover_text(undo).clicked() {
             asks.push(Command::Undo);
         }
         let can = history.redo_len() > 0;
         let sign = icon::ARROW_CLOCKWISE;
-        let button = ui.add_enabled_ui(can, |ui| kit::icon_button(ui, sign, &redo, false));
-        if button.inner.clicked() {
+        let button = egui::Button::new(egui::RichText::new(sign).size(18.0));
+        let button = ui.add_enabled(can, button.frame_when_inactive(false));
+        if button.on_hover_text(redo).clicked() {
             asks.push(Command::Redo);
         }
         ui.separator();
