@@ -41,7 +41,7 @@ impl Studio {
         self.carry(Some(pose(left, bend)), Some(pose(right, -bend)));
     }
 
-    fn in_draft(&self) -> &Draft {
+    fn swinging(&self) -> &Draft {
         self.world().resource::<Draft>()
     }
 
@@ -72,10 +72,7 @@ impl Studio {
 fn a_surface_is_swept_seen_and_taken_back() {
     let mut studio = Studio::new();
     studio.sweeping(SweepShape::Surface);
-    let live = studio
-        .in_draft()
-        .live
-        .expect("a curve hangs between the hands");
+    let live = studio.swinging().live.expect("a curve hangs between the hands");
     near(live.points[0], LEFT, 1e-5);
     near(live.points[1], RIGHT, 1e-5);
     let before = studio.undo_len();
@@ -119,7 +116,6 @@ fn a_capped_tube_is_a_solid_that_cuts_and_is_written() {
         path: file.clone(),
         step: None,
         unit: None,
-        up: None,
         only: None,
     });
     studio.settle();
@@ -159,7 +155,7 @@ fn two_full_turns_are_counted() {
         );
         studio.frame();
     }
-    let twist = studio.in_draft().live.unwrap().twist;
+    let twist = studio.swinging().live.unwrap().twist;
     assert!((twist - 4.0 * PI).abs() < 1e-3, "{twist}");
     let id = studio.swipe_away(Vec3::Z * -0.05, 0.0);
     let Some(Node::Clones { row, .. }) = studio.object(id).recipe().map(|r| r.node()) else {
@@ -176,17 +172,17 @@ fn a_swipe_outwards_and_the_cross_raise_w() {
         studio.swipe(Some(Vec2::new(x, 0.0)));
     }
     studio.swipe(None);
-    let raised = studio.in_draft().slopes[1];
+    let raised = studio.swinging().slopes[1];
     assert!(
         raised > 1.5,
         "outwards, and what springs back takes nothing back: {raised}"
     );
     studio.click(Side::Left, Action::Left);
-    assert!(studio.in_draft().slopes[0] < 1.0);
+    assert!(studio.swinging().slopes[0] < 1.0);
     for _ in 0..20 {
         studio.click(Side::Left, Action::Right);
     }
-    assert_eq!(studio.in_draft().slopes[0], 3.0);
+    assert_eq!(studio.swinging().slopes[0], 3.0);
     studio.click(Side::Right, Action::Up);
     assert_eq!(
         studio.world().resource::<Settings>().sweep.shape,
@@ -244,7 +240,7 @@ fn one_curve_hands_at_one_point_and_lost_hands_have_an_outcome() {
         studio.frames(12);
         studio.let_go(Side::Right, Action::Act);
         studio.frames(3);
-        assert!(studio.in_draft().live.is_none_or(|r| r.is_sound()));
+        assert!(studio.swinging().live.is_none_or(|r| r.is_sound()));
     }
     assert!(studio.document().check().is_empty());
 }
@@ -288,7 +284,7 @@ fn a_curve_of_a_sweep_is_bent_by_hand() {
     let id = studio.swipe_away(Vec3::Z * -0.3, 0.0);
     let before = studio.swept(id).ribs.clone();
     studio.click(Side::Right, Action::Finish);
-    assert!(matches!(studio.in_draft().phase, Phase::Editing { .. }));
+    assert!(matches!(studio.swinging().phase, Phase::Editing { .. }));
     // At the right end of the middle curve.
     studio.reach(Side::Right, Vec3::new(0.2, 1.0, -0.15));
     studio.press(Side::Right, Action::Act);
@@ -308,7 +304,7 @@ fn a_curve_of_a_sweep_is_bent_by_hand() {
     assert!(rise(0).abs() < 1e-5 && rise(before.len() - 1).abs() < 1e-5);
     assert!((after[middle].points[0] - before[middle].points[0]).length() < 2e-3);
     studio.click(Side::Right, Action::Finish);
-    assert_eq!(studio.in_draft().phase, Phase::Idle);
+    assert_eq!(studio.swinging().phase, Phase::Idle);
 }
 
 #[test]
@@ -325,9 +321,9 @@ fn with_one_hand_the_ends_are_placed_and_moved_one_after_the_other() {
     };
     drag(&mut studio, LEFT, LEFT + Vec3::new(0.05, 0.1, 0.0));
     drag(&mut studio, RIGHT, RIGHT + Vec3::new(0.05, -0.1, 0.0));
-    assert!(matches!(studio.in_draft().solo, Solo::Ready { .. }));
+    assert!(matches!(studio.swinging().solo, Solo::Ready { .. }));
     let live = studio
-        .in_draft()
+        .held()
         .live
         .expect("the curve hangs between the ends");
     near(live.points[1], RIGHT, 1e-5);
@@ -429,7 +425,7 @@ fn a_frame_sends_what_is_new_and_not_the_surface() {
         let _ = before.elapsed();
         bytes.push(studio.world().resource::<Wires>().bytes());
     }
-    let ribs = studio.in_draft().ribs.len();
+    let ribs = studio.swinging().ribs.len();
     assert!(ribs > 250, "{ribs}");
     let (early, late) = (
         bytes[20..60].iter().max().unwrap(),
