@@ -72,7 +72,10 @@ impl Studio {
 fn a_surface_is_swept_seen_and_taken_back() {
     let mut studio = Studio::new();
     studio.sweeping(SweepShape::Surface);
-    let live = studio.swinging().live.expect("a curve hangs between the hands");
+    let live = studio
+        .swinging()
+        .live
+        .expect("a curve hangs between the hands");
     near(live.points[0], LEFT, 1e-5);
     near(live.points[1], RIGHT, 1e-5);
     let before = studio.undo_len();
@@ -323,7 +326,7 @@ fn with_one_hand_the_ends_are_placed_and_moved_one_after_the_other() {
     drag(&mut studio, RIGHT, RIGHT + Vec3::new(0.05, -0.1, 0.0));
     assert!(matches!(studio.swinging().solo, Solo::Ready { .. }));
     let live = studio
-        .held()
+        .swinging()
         .live
         .expect("the curve hangs between the ends");
     near(live.points[1], RIGHT, 1e-5);
@@ -441,4 +444,34 @@ fn a_frame_sends_what_is_new_and_not_the_surface() {
         "the net is put away"
     );
     assert_eq!(studio.world().resource::<Selection>().0.len(), 1);
+}
+
+#[test]
+fn a_surface_carried_into_assemble_is_offered_a_thickness() {
+    let mut studio = Studio::new();
+    studio.sweeping(SweepShape::Surface);
+    studio.both(LEFT, RIGHT, 0.5);
+    let id = studio.swipe_away(Vec3::Z * -0.2, 0.2);
+    let carry = |to: &str| Command::Carry {
+        objects: vec![id],
+        to: to.to_owned().into(),
+    };
+    studio.ask(carry("csg"));
+    studio.frames(3);
+    assert!(studio.swinging().offer.is_some(), "{}", studio.notices());
+    studio.click(Side::Right, Action::Cancel);
+    assert!(studio.swinging().offer.is_none() && studio.object(id).sheet().is_some());
+    studio.ask(carry("csg"));
+    studio.frames(3);
+    let steps = studio.undo_len();
+    studio.click(Side::Right, Action::Finish);
+    studio.frames(3);
+    assert!(studio.object(id).recipe().is_some(), "a plate");
+    assert_eq!((studio.marks().len(), studio.undo_len()), (1, steps + 1));
+    // Back in Sweep the plate is what is cloned.
+    studio.ask(carry("sweep"));
+    studio.frames(2);
+    let settings = &studio.world().resource::<Settings>().sweep;
+    assert_eq!(settings.item, SweepItem::Object(id.0));
+    assert_eq!(settings.shape, SweepShape::Clones);
 }

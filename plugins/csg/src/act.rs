@@ -7,7 +7,7 @@ use midair_studio::{
     command::Command,
     evaluate::Evaluations,
     hands::{Action, Cross, Hands, Haptic, Side},
-    hold::Held,
+    hold::{Held, Reserved},
     notice::Notices,
     objects::picked,
     pick::Touch,
@@ -189,7 +189,7 @@ pub(crate) fn operate(
 /// One press carries the whole sequence out.
 pub(crate) fn finish(
     mut hands: ResMut<Hands>,
-    held: Res<Held>,
+    (held, reserved): (Res<Held>, Res<Reserved>),
     mut draft: ResMut<Draft>,
     mut project: ResMut<Project>,
     mut evaluations: ResMut<Evaluations>,
@@ -198,6 +198,10 @@ pub(crate) fn finish(
     let Some(side) = hands.pressed(Action::Finish) else {
         return;
     };
+    // It answers a question that was asked just now.
+    if reserved.has(side, Action::Finish) {
+        return;
+    }
     if !held.is_empty() {
         notices.info("Let go of the operand first, then update.");
         hands.pulse(side, Haptic::Refused);

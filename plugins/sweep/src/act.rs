@@ -5,7 +5,9 @@ use midair_curve::End;
 use midair_document::ObjectId;
 use midair_studio::{
     hands::{Action, Cross, Hand, Hands, Haptic, Side},
+    hold::Reserved,
     notice::Notices,
+    pick::Touch,
     project::{Project, Selection, Shelf},
     settings::{Settings, SweepHands},
 };
@@ -112,8 +114,9 @@ pub(crate) fn ends(
     mut hands: ResMut<Hands>,
     settings: Res<Settings>,
     time: Res<Time>,
+    (touch, mut reserved): (Res<Touch>, ResMut<Reserved>),
     mut draft: ResMut<Draft>,
-    mut project: ResMut<Project>,
+    project: Res<Project>,
     selection: Res<Selection>,
     mut notices: ResMut<Notices>,
 ) {
@@ -123,8 +126,10 @@ pub(crate) fn ends(
     if hands.pressed(Action::Cancel).is_some() {
         cancel(draft);
     }
-    if let Some(side) = hands.pressed(Action::Finish) {
-        let done = finish(draft, &mut project, &selection, &mut notices);
+    if let Some(side) = hands.pressed(Action::Finish)
+        && !reserved.has(side, Action::Finish)
+    {
+        let done = finish(draft, &project, &selection, &mut notices);
         hands.pulse(side, if done { Haptic::Tick } else { Haptic::Refused });
     }
     if !draft.is_sweeping() {
@@ -142,7 +147,13 @@ pub(crate) fn ends(
     let dt = time.delta_secs();
     if draft.alone {
         if !matches!(draft.phase, Phase::Editing { .. }) {
-            solo(draft, hands.get(main), dt, unit, &settings);
+            // Grab takes what is touched in hand, and elsewhere the whole curve.
+            let carries = matches!(draft.solo, Solo::Carried { .. })
+                || matches!(draft.solo, Solo::Ready { .. }) && touch.get(main).is_none();
+            if carries {
+                reserved.claim(main, Action::Grab);
+            }
+            solo(draft, hands.get(main), dt, unit, carries, &settings);
         }
     } else {
         if hands.get(off).pressed(Action::Act) && !matches!(draft.phase, Phase::Editing { .. }) {
@@ -171,14 +182,15 @@ pub(crate) fn ends(
 }
 
 /// The one hand places the ends or moves them.
-fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, settings: &Settings) {
+fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, carries: bool, settings: &Settings) {
     let doing = Doing {
         at: hand.pose.position,
         dt,
         pressed: hand.pressed(Action::Act),
         held: hand.held(Action::Act),
-        grabbed: hand.pressed(Action::Grab),
+        grabbed: carries && hand.pressed(Action::Grab),
         grabs: hand.held(Action::Grab),
+        middle: is_at_middle(draft.live.as_ref(), hand.pose.position, unit),
     };
     let then = draft.solo.advance(&doing, unit);
     draft.ends = draft.solo.ends();
@@ -208,6 +220,17 @@ fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, settings: &Settings)
             draft.solo.rests();
         }
     }
+}
+
+/// Whether a hand is at the curve and not near its ends.
+fn is_at_middle(rib: Option<&Rib>, at: Vec3, unit: f32) -> bool {
+    let Some(rib) = rib else { return false };
+    let curve = rib.curve();
+    (5..=15).any(|i| {
+        let p = curve.at(f64::from(i) / 20.0).as_vec3();
+        let apart = (rib.points[0].distance(rib.points[1]) / 20.0).max(0.015 * unit);
+        p.distance(at) <= apart
+    })
 }
 
 fn rails(draft: &mut Draft) {
@@ -298,19 +321,15 @@ fn cancel(draft: &mut Draft) {
     }
 }
 
-/// Takes up a sweep to edit its curves, or puts it down; closes a surface that was offered a
-/// thickness.
+/// Takes up a sweep to edit its curves, or puts it down.
 fn finish(
     draft: &mut Draft,
-    project: &mut Project,
+    project: &Project,
     selection: &Selection,
     notices: &mut Notices,
 ) -> bool {
     if draft.is_sweeping() {
         return false;
-    }
-    if let Some((object, thickness)) = draft.offer.take() {
-        return edit::close(project, notices, object, thickness);
     }
     if let Phase::Editing { .. } = draft.phase {
         draft.phase = Phase::Idle;

@@ -3,10 +3,11 @@
 use bevy::prelude::*;
 use midair_studio::{
     hands::{Action, Hands},
+    hold::Ghosted,
     project::{Project, Selection},
     settings::{Settings, SweepShape},
-    show::{Cues, Readouts, Tint},
-    tools::{Hint, HintKey, Hints},
+    show::Readouts,
+    tools::{Aim, Hint, HintKey, Hints},
 };
 use midair_swept::Rib;
 
@@ -111,41 +112,32 @@ fn frames(gizmos: &mut Gizmos, rib: &Rib, unit: f32) {
     }
 }
 
-pub(crate) fn colours(
-    project: Res<Project>,
-    selection: Res<Selection>,
-    draft: Res<Draft>,
-    touch: Res<midair_studio::pick::Touch>,
-    mut cues: ResMut<Cues>,
-) {
-    let mut next = Cues::default();
-    for (id, object) in project.document().objects() {
-        if object.fresh {
-            next.entry(id).tint = Tint::Fresh;
-        }
-    }
-    for side in midair_studio::hands::Side::BOTH {
-        if let Some(touched) = touch.get(side).filter(|_| !draft.is_sweeping()) {
-            next.entry(touched.object).touched = true;
-        }
-    }
-    for &object in &selection.0 {
-        next.entry(object).selected = true;
-    }
-    if let Phase::Editing {
-        object,
-        grip: Some(_),
-        ..
-    } = &draft.phase
+/// What is bent, or would be closed, is a shell: what it becomes is shown in its place. And how a
+/// pointer is to find a depth for the ends.
+pub(crate) fn ghosts(draft: Res<Draft>, mut ghosted: ResMut<Ghosted>, mut aim: ResMut<Aim>) {
+    let bent = match &draft.phase {
+        Phase::Editing {
+            object,
+            grip: Some(_),
+            ..
+        } => vec![*object],
+        _ => Vec::new(),
+    };
+    ghosted.set_if_neq(Ghosted(bent));
+    let mut next = Aim {
+        draws: draft.alone,
+        ..Aim::default()
+    };
+    if draft.alone
+        && !draft.is_sweeping()
+        && let (Some(rib), Solo::Ready { .. }) = (&draft.live, &draft.solo)
     {
-        next.entry(*object).ghost = true;
+        let mut points = Vec::new();
+        rib.points_into(25, &mut points);
+        next.points = rib.points.to_vec();
+        next.lines = points.windows(2).map(|p| (p[0], p[1])).collect();
     }
-    if let Some((object, _)) = &draft.offer {
-        next.entry(*object).ghost = true;
-    }
-    if *cues != next {
-        *cues = next;
-    }
+    aim.set_if_neq(next);
 }
 
 pub(crate) fn hints(
@@ -199,7 +191,10 @@ pub(crate) fn hints(
                 };
                 next.say(Action::Act, does);
                 if matches!(draft.solo, Solo::Ready { .. }) {
-                    next.say(Action::Grab, "carry both ends");
+                    next.say(
+                        Action::Grab,
+                        "carry both ends; or drag the curve by its middle",
+                    );
                 }
             } else {
                 next.say(Action::Act, "hold to sweep");

@@ -6,7 +6,7 @@ use bevy::math::Affine3A;
 use bevy::prelude::*;
 use midair_curve::{End, Lengths};
 use midair_document::{Edit, Kind, Object, ObjectId};
-use midair_field::{Node, Placement, Profile, Recipe, Sweep};
+use midair_field::{Node, Placement, Recipe, Sweep};
 use midair_studio::{
     hands::{Action, Hands, Haptic, Side},
     notice::Notices,
@@ -56,26 +56,6 @@ pub(crate) fn smooth(
     };
     let ribs = smoothed(&sweep.ribs, ALPHA, times);
     replace(project, notices, id, "Smooth", Sweep { ribs, ..sweep })
-}
-
-/// A surface becomes a plate, a tube a full one.
-pub(crate) fn close(
-    project: &mut Project,
-    notices: &mut Notices,
-    id: ObjectId,
-    thickness: f32,
-) -> bool {
-    let Some((sweep, _)) = curves(project, id) else {
-        return false;
-    };
-    let closed = match sweep.profile {
-        Profile::Sheet => Sweep { thickness, ..sweep },
-        Profile::Tube => Sweep {
-            caps: true,
-            ..sweep
-        },
-    };
-    replace(project, notices, id, "Close", closed)
 }
 
 /// One sweep becomes two that meet at a curve.

@@ -7,6 +7,7 @@
 
 mod act;
 mod ask;
+mod carry;
 mod clones;
 mod cue;
 mod edit;
@@ -20,6 +21,7 @@ mod write;
 use bevy::prelude::*;
 use midair_studio::{
     StudioSet,
+    hold::Ghosted,
     panel::{AddPanel, Dock, PanelInfo, icon},
     tools::{AddTool, Tool, ToolChanged, ToolId, tool_active},
 };
@@ -62,7 +64,9 @@ impl Plugin for SweepPlugin {
         .init_resource::<Wires>()
         .init_resource::<clones::Row>()
         .init_resource::<write::Looks>()
+        .init_resource::<carry::Ghost>()
         .add_observer(abort)
+        .add_observer(carry::take)
         .add_systems(
             Update,
             (
@@ -72,12 +76,21 @@ impl Plugin for SweepPlugin {
                     .in_set(StudioSet::Act),
                 act::commit.in_set(StudioSet::Commit),
                 (wires::draw, clones::draw).in_set(StudioSet::Rebuild),
-                (cue::curve, cue::colours, cue::hints).in_set(StudioSet::Cue),
+                (cue::curve, cue::ghosts, cue::hints).in_set(StudioSet::Cue),
             )
                 .run_if(tool_active(SWEEP)),
         )
         // Looked for off the frame, and told whatever mode one is in by then.
-        .add_systems(Update, write::tell.in_set(StudioSet::Commit));
+        .add_systems(Update, write::tell.in_set(StudioSet::Commit))
+        // A thickness is offered in the mode that a surface was carried into.
+        .add_systems(
+            Update,
+            (
+                carry::claim.in_set(StudioSet::Pick),
+                carry::accept.in_set(StudioSet::Act).before(act::ends),
+                carry::ghost.in_set(StudioSet::Rebuild),
+            ),
+        );
     }
 }
 
@@ -87,11 +100,13 @@ fn abort(
     mut draft: ResMut<Draft>,
     mut wires: ResMut<Wires>,
     mut row: ResMut<clones::Row>,
+    mut ghosted: ResMut<Ghosted>,
     mut commands: Commands,
 ) {
     if changed.active != SWEEP {
         draft.leave();
         wires.clear(&mut commands);
         row.clear(&mut commands);
+        ghosted.set_if_neq(Ghosted::default());
     }
 }

@@ -84,6 +84,8 @@ pub(crate) struct Doing {
     /// Grab went down, is down.
     pub grabbed: bool,
     pub grabs: bool,
+    /// It is at the curve, between its ends.
+    pub middle: bool,
 }
 
 /// What follows for the sweep.
@@ -201,7 +203,7 @@ impl Solo {
                     ends: [left, right],
                 }
             }
-            Self::Ready { ends } if doing.grabbed => {
+            Self::Ready { ends } if doing.grabbed || (doing.pressed && doing.middle) => {
                 then = Then::Begin;
                 Self::Carried {
                     ends,
@@ -256,7 +258,7 @@ impl Solo {
                 }
             }
             Self::Carried { ends, from, .. } => {
-                if !doing.grabs {
+                if !doing.grabs && !doing.held {
                     then = Then::End;
                 }
                 Self::Carried {
@@ -316,6 +318,7 @@ mod tests {
             held,
             grabbed: false,
             grabs: false,
+            middle: false,
         }
     }
 
