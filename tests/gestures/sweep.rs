@@ -475,3 +475,67 @@ fn a_surface_carried_into_assemble_is_offered_a_thickness() {
     assert_eq!(settings.item, SweepItem::Object(id.0));
     assert_eq!(settings.shape, SweepShape::Clones);
 }
+
+/// Measured where nothing is drawn: what the main schedule does.
+#[test]
+fn a_hundred_thousand_clones_cost_a_frame_nothing() {
+    let mut studio = Studio::new();
+    studio.sweeping(SweepShape::Clones);
+    studio.set("spread", true);
+    studio.set("clones", 256);
+    studio.set("clone_size", 0.004);
+    studio.set("paced", false);
+    // Thinned to the clones' own distance: 400 curves and more.
+    studio.both(LEFT, RIGHT, 0.3);
+    let ribs: Vec<_> = (0..400)
+        .map(|i| {
+            studio
+                .swinging()
+                .live
+                .unwrap()
+                .shifted(Vec3::Z * (-0.004 * i as f32))
+        })
+        .collect();
+    let ball = midair_field::Recipe::from(midair_field::Primitive::Sphere { radius: 0.002 });
+    let row = midair_field::Row {
+        ribs: ribs.into(),
+        count: 256,
+        size: 1.0,
+        paced: false,
+    };
+    let recipe = midair_field::Recipe::new(Node::Clones { row, recipe: ball });
+    let id = ObjectId(studio.document().next_id());
+    let object = midair_document::Object::solid("Clones", recipe).into();
+    studio.ask(Command::Edit(midair_document::Edit::Add { id, object }));
+    studio.settle();
+    let at = studio
+        .world()
+        .resource::<midair_studio::show::ObjectMap>()
+        .get(id)
+        .unwrap();
+    let pieces = studio.world().get::<Children>(at).map_or(0, |c| c.len());
+    assert!((1..200).contains(&pieces), "{pieces}");
+    studio.frames(10);
+    let mut times: Vec<f64> = (0..200)
+        .map(|i| {
+            let turn = Quat::from_rotation_y(i as f32 * 0.01);
+            studio.put(
+                Side::Left,
+                Pose {
+                    position: LEFT + Vec3::Y,
+                    rotation: turn,
+                },
+            );
+            let before = Instant::now();
+            studio.frame();
+            before.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    println!(
+        "102,400 clones in {pieces} pieces: a frame takes {:.2} ms in the median, {:.2} at the 99th",
+        times[100], times[198]
+    );
+    assert!(times[100] < 4.0, "{}", times[100]);
+    assert!(studio.warnings().is_empty(), "{:?}", studio.warnings());
+}

@@ -22,6 +22,9 @@ pub struct Made {
     pub mesh: Arc<TriMesh>,
     /// Where the clones of a row stand.
     pub places: Option<Arc<[Place]>>,
+    /// Of a row of very many clones, the surfaces of all of them in a few pieces, ready to be drawn;
+    /// taken by the first that draws them.
+    pub(crate) pieces: std::sync::Mutex<Vec<Mesh>>,
     /// The same, ready to be drawn; taken by the first that draws it.
     pub(crate) drawn: std::sync::Mutex<Option<Mesh>>,
     /// The same, ready to be picked; `None` where the solid is empty.
@@ -53,11 +56,22 @@ impl Made {
     /// A row of clones.
     fn from_clones(clones: Clones) -> Self {
         let one = Self::from_mesh(clones.mesh);
+        let pieces = if clones.places.len() > ONE_BY_ONE {
+            merged(&one.mesh, &clones.places)
+        } else {
+            Vec::new()
+        };
         let volume = clones.places.iter().map(|p| f64::from(p.scale).powi(3));
         Self {
             volume: one.volume * volume.sum::<f64>(),
             shape: boxes(&one.mesh, &clones.places),
-            bytes: one.bytes + clones.places.len() * 192,
+            bytes: one.bytes
+                + clones.places.len() * 192
+                + pieces
+                    .iter()
+                    .map(|p| p.count_vertices() * 60)
+                    .sum::<usize>(),
+            pieces: std::sync::Mutex::new(pieces),
             places: Some(clones.places.into()),
             ..one
         }
@@ -98,6 +112,7 @@ impl Made {
             solid: None,
             bytes,
             places: None,
+            pieces: std::sync::Mutex::default(),
             mesh,
         }
     }
@@ -149,7 +164,19 @@ impl Running {
             // A mesh that is baked on the way shows its progress and stops when asked to.
             let meshes = volumes.watched(&progress);
             let make = || {
-                if let Some(row) = clones(&recipe, step, &meshes, &cancelled)? {
+                if let Some(mut row) = clones(&recipe, step, &meshes, &cancelled)? {
+                    // Very many are coarser: nobody sees each of them from near.
+                    let mut coarser = step;
+                    for _ in 0..6 {
+                        if row.mesh.positions.len() * row.places.len() <= MOST_VERTICES {
+                            break;
+                        }
+                        coarser *= 1.5;
+                        match clones(&recipe, coarser, &meshes, &cancelled)? {
+                            Some(next) if !next.mesh.triangles.is_empty() => row = next,
+                            _ => break,
+                        }
+                    }
                     return Ok(Made::from_clones(row));
                 }
                 if let Node::Sweep(sweep) = recipe.node()
@@ -191,6 +218,33 @@ impl Running {
             let _ = outcome.set(made);
         }
     }
+}
+
+/// Clones up to so many are entities of their own, drawn together since they share a mesh.
+pub(crate) const ONE_BY_ONE: usize = 1024;
+/// Vertices of all clones of a row together, about.
+const MOST_VERTICES: usize = 6_000_000;
+/// Vertices of one piece.
+const PIECE: usize = 500_000;
+
+/// The surfaces of all clones in pieces of neighbours, so that the main schedule has few things to
+/// look at.
+pub(crate) fn merged(one: &TriMesh, places: &[Place]) -> Vec<Mesh> {
+    let each = (PIECE / one.positions.len().max(1)).max(1);
+    let piece = |places: &[Place]| {
+        let mut all = TriMesh::default();
+        for place in places {
+            let first = all.positions.len() as u32;
+            let there = |p: &Vec3| place.translation + place.rotation * (*p * place.scale);
+            all.positions.extend(one.positions.iter().map(there));
+            all.normals
+                .extend(one.normals.iter().map(|n| place.rotation * *n));
+            let shifted = one.triangles.iter().map(|t| t.map(|v| v + first));
+            all.triangles.extend(shifted);
+        }
+        to_bevy_mesh(&all)
+    };
+    places.chunks(each).map(piece).collect()
 }
 
 /// A box around each clone: enough to point at one.

@@ -22,6 +22,7 @@ use midair_solid::Solid;
 pub use delivery::{Deliver, Delivered, Delivery, Job};
 pub use job::Made;
 use job::Running;
+pub(crate) use job::{ONE_BY_ONE, merged};
 pub use live::{Live, Sketch};
 use memory::Memory;
 

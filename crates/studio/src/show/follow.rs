@@ -13,7 +13,7 @@ use midair_mesh::{MeshHash, TriMesh};
 
 use super::{Drafts, transform};
 use crate::StudioSet;
-use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made};
+use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made, ONE_BY_ONE, merged};
 use crate::pick::Proxy;
 use crate::project::Project;
 use crate::settings::{LinesShown, Settings};
@@ -208,7 +208,24 @@ fn show(
                 match &made.places {
                     Some(places) => {
                         commands.entity(entity).remove::<Mesh3d>();
-                        stand(places, &handle, look, entity, id.0, &mut commands);
+                        let pieces = made.pieces.lock().map(|mut p| std::mem::take(&mut *p));
+                        // They were drawn before, and let go since.
+                        let pieces = pieces.unwrap_or_default();
+                        let pieces = if pieces.is_empty() && places.len() > ONE_BY_ONE {
+                            merged(&made.mesh, places)
+                        } else {
+                            pieces
+                        };
+                        let pieces: Vec<_> = pieces
+                            .into_iter()
+                            .map(|m| (meshes.add(m), Transform::IDENTITY))
+                            .collect();
+                        let each = if pieces.is_empty() {
+                            one_by_one(places, &handle)
+                        } else {
+                            pieces
+                        };
+                        stand(each, look, entity, id.0, &mut commands);
                     }
                     None => {
                         commands.entity(entity).insert(Mesh3d(handle));
@@ -282,29 +299,34 @@ pub fn display_steps(document: &Document, object: &Object, recipe: &Recipe) -> V
     }
 }
 
-/// The clones of a row, each an entity that shares mesh and look with the others, so that they are
-/// drawn together.
-fn stand(
+/// The clones of a row, each an entity that shares its mesh with the others, so that they are drawn
+/// together.
+fn one_by_one(
     places: &[midair_field::Place],
     mesh: &Handle<Mesh>,
+) -> Vec<(Handle<Mesh>, Transform)> {
+    let at = |p: &midair_field::Place| Transform {
+        translation: p.translation,
+        rotation: p.rotation,
+        scale: Vec3::splat(p.scale),
+    };
+    places.iter().map(|p| (mesh.clone(), at(p))).collect()
+}
+
+/// What a row of clones is drawn as: children of its entity, that look as it does.
+fn stand(
+    each: Vec<(Handle<Mesh>, Transform)>,
     look: &MeshMaterial3d<StandardMaterial>,
     row: Entity,
     object: ObjectId,
     commands: &mut Commands,
 ) {
-    let each: Vec<_> = places
-        .iter()
-        .map(|p| {
-            let at = Transform {
-                translation: p.translation,
-                rotation: p.rotation,
-                scale: Vec3::splat(p.scale),
-            };
-            let drawn = (Mesh3d(mesh.clone()), look.clone(), at);
-            (CloneOf(object), drawn, ChildOf(row))
-        })
-        .collect();
-    commands.spawn_batch(each);
+    let look = look.clone();
+    let drawn = each.into_iter().map(move |(mesh, at)| {
+        let drawn = (Mesh3d(mesh), look.clone(), at);
+        (CloneOf(object), drawn, ChildOf(row))
+    });
+    commands.spawn_batch(drawn.collect::<Vec<_>>());
 }
 
 /// Until a fresh result is there, its operands are shown where they stood.
