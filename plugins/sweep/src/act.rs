@@ -381,7 +381,8 @@ pub(crate) fn commit(
         Ok(made) => {
             let sweep = made.sweep.clone();
             let name = made.name.clone();
-            let done = project.commit(made.step, made.edits, &mut notices);
+            // Its images come with it, as one step.
+            let done = project.commit_live(made.step, made.edits, &mut notices);
             if done {
                 selection.set_if_neq(Selection(vec![made.object]));
                 looks.look(name, sweep);

@@ -65,8 +65,12 @@ impl SweepAsk {
 
 /// The points of a stroke in the world, where an object is one.
 pub(crate) fn stroke(project: &Project, id: ObjectId) -> Option<Polyline> {
-    let _ = (project, id);
-    None
+    let object = project.document().object(id)?;
+    let there = midair_document::affine(&object.placement);
+    let points = object.stroke()?.points();
+    Some(Polyline::new(
+        points.into_iter().map(|p| there.transform_point3(p)),
+    ))
 }
 
 pub(crate) fn ask(

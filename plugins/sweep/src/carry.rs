@@ -21,11 +21,9 @@ use crate::{SWEEP, ask, ends::Rail};
 
 /// Where what is carried becomes an operand.
 const ASSEMBLE: ToolId = ToolId::new("csg");
-/// Where it becomes a brush.
-const BRUSH: ToolId = ToolId::new("brush");
 
 /// A stroke becomes the rail of the next free end, a solid what is cloned, a surface the sweep whose
-/// curves are bent. A surface carried elsewhere is offered the thickness that would close it.
+/// curves are bent. A surface carried into Assemble is offered the thickness that would close it.
 pub(crate) fn take(
     carried: On<Carried>,
     project: Res<Project>,
@@ -36,7 +34,7 @@ pub(crate) fn take(
 ) {
     let document = project.document();
     if carried.to != SWEEP {
-        if carried.to != ASSEMBLE && carried.to != BRUSH {
+        if carried.to != ASSEMBLE {
             return;
         }
         let open = carried.objects.iter().find_map(|&id| {
