@@ -134,7 +134,7 @@ fn a_polygon_has_four_corners_and_is_finished() {
 #[test]
 fn a_volume_is_stamped_where_it_is_held_at_its_size() {
     let mut s = painter("Volume");
-    s.ask(Ask::Volume("brush/star".into()).command());
+    s.ask(Ask::Volume("solid/cube".into()).command());
     set(&mut s, "brush.size", "0.4");
     let pose = Pose {
         position: HERE,
@@ -147,7 +147,7 @@ fn a_volume_is_stamped_where_it_is_held_at_its_size() {
     let mesh = s.mesh(s.only(), 0.01);
     let bounds = mesh.bounds();
     assert!(bounds.centre().distance(HERE) < 0.02, "{bounds:?}");
-    assert!((bounds.size().y - 0.4).abs() < 0.03, "{bounds:?}");
+    assert!((bounds.size().y - 0.4).abs() < 5e-3, "{bounds:?}");
     s.faultless(s.only(), 0.01);
 }
 
@@ -331,4 +331,18 @@ fn a_carried_solid_is_the_volume_brush() {
     let painting = s.document().objects().next_back().unwrap().0;
     let painted = canvas(s.object(painting)).unwrap();
     assert!(matches!(painted.strokes[0].skeleton, Skeleton::Volume(_)));
+}
+
+#[test]
+fn live_symmetry_paints_the_other_side_in_the_same_step() {
+    let mut s = painter("Point");
+    set(&mut s, "symmetry.mirror", "\"X\"");
+    s.frames(2);
+    let before = s.undo_len();
+    dab(&mut s, Vec3::new(0.3, 1.0, 0.0));
+    assert_eq!(s.undo_len(), before + 1);
+    assert_eq!(strokes(&s).strokes.len(), 2);
+    let bounds = s.mesh(s.only(), 0.01).bounds();
+    assert!(bounds.centre().x.abs() < 1e-3, "{bounds:?}");
+    assert!((bounds.size().x - 0.7).abs() < 0.01, "{bounds:?}");
 }

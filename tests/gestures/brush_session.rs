@@ -8,8 +8,9 @@ use midair::{Stage, probe};
 use midair_brush::{BRUSH, canvas};
 use midair_mesh::check;
 use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
+use midair_solid::Solid;
 use midair_studio::command::Command;
-use midair_studio::project::{Begin, Places};
+use midair_studio::project::{Begin, Places, Project};
 use midair_studio::settings::Settings;
 
 use crate::desk::Desk;
@@ -66,7 +67,8 @@ fn a_figure_by_mouse_alone_plays_back_to_the_same_bytes() {
     desk.take_brush();
     let radius = |d: &Desk| d.world().resource::<Settings>().brush.radius;
     let before = radius(&desk);
-    // A body led along the ground, a head beside its end.
+    // On the work plane: a body led along it, a head beside its end.
+    desk.strike_one(KeyCode::KeyP);
     let (from, to) = (Vec3::new(0.0, 0.0, 0.2), Vec3::new(0.3, 0.0, 0.0));
     let [a, b] = [from, to].map(|p| desk.pixel(p));
     desk.drag(MouseButton::Left, a, b);
@@ -151,4 +153,36 @@ fn a_figure_by_gamepad_alone_plays_back_to_the_same_bytes() {
     desk.tap(Button::Select);
     desk.settle();
     plays_back(desk, &recording, 1);
+}
+
+/// 3DBrushVR Fig. 6, at the scale of its Fig. 4.
+#[test]
+fn the_sagittarius_is_one_closed_piece() {
+    let session = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/assets/sessions/sagittarius.ron"
+    );
+    let home = tempfile::tempdir().unwrap();
+    let mut player = midair::app(Stage::Bare, Places::below(home.path()), Begin::default());
+    player.add_plugins(PlayerPlugin);
+    let options = PlayOptions {
+        probe,
+        ..PlayOptions::default()
+    };
+    let report = play(
+        &mut player,
+        Session::load(Path::new(session)).unwrap(),
+        options,
+    )
+    .unwrap();
+    assert_eq!(report.objects.len(), 1);
+    let document = player.world().resource::<Project>().document();
+    let (_, object) = document.objects().next().unwrap();
+    let go = std::sync::atomic::AtomicBool::new(false);
+    let recipe = object.recipe().unwrap();
+    let made = Solid::make(recipe, &object.placement, document.step(), &(), &go).unwrap();
+    let report = check(&made.mesh());
+    assert!(report.is_faultless(), "{:?}", report.faults());
+    assert_eq!(report.pieces, 1);
+    assert!(report.triangles > 110_000, "{}", report.triangles);
 }

@@ -304,7 +304,7 @@ impl Document {
         };
         let end = at.saturating_add(gone);
         if end > canvas.strokes.len() {
-            return Err(EditError::NoStroke(at + 1, end));
+            return Err(EditError::NoStroke(at.saturating_add(1), end));
         }
         let mut next = canvas.strokes.clone();
         let gone: Vec<Stroke> = next.splice(at..end, strokes.iter().cloned()).collect();

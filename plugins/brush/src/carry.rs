@@ -1,11 +1,61 @@
 //! What comes in from other modes.
 
 use bevy::prelude::*;
+use midair_document::{Edit, Object, ObjectId};
 use midair_studio::{carry::Carried, settings::BrushSkeleton};
 
 use crate::{BRUSH, easel::canvas, paint_on, stroke, work::Studio};
 
-/// A solid becomes a volume brush; a painting is gone on with.
+/// The points that a drawn line or stroke goes through, in the world.
+fn way(object: &Object) -> Option<Vec<Vec3>> {
+    let points = match (object.line(), object.stroke()) {
+        (Some(line), _) => vec![line.a, line.b],
+        (None, Some(stroke)) => stroke.points(),
+        (None, None) => return None,
+    };
+    let placed = midair_document::affine(&object.placement);
+    let world = points
+        .into_iter()
+        .map(|p| placed.transform_point3(p).as_vec3());
+    Some(world.collect())
+}
+
+/// Drawn lines and strokes become line skeletons of the painting, as one step.
+fn draw(studio: &mut Studio, objects: &[(ObjectId, Object)]) {
+    let radius = studio.brush().radius;
+    let mut work = None;
+    let mut dimmed = Vec::new();
+    for (id, object) in objects {
+        let Some(points) = way(object) else { continue };
+        let Some(&first) = points.first() else {
+            continue;
+        };
+        let work = work.get_or_insert_with(|| studio.base(first));
+        let frame = stroke::Frame::of(&work.placement);
+        let made = match points.as_slice() {
+            [a, b] => stroke::line(*a, *b, radius, work.canvas.reach, &frame),
+            _ => {
+                let way: Vec<Vec4> = points.iter().map(|p| p.extend(radius)).collect();
+                Ok(stroke::led(&way, &frame))
+            }
+        };
+        match made {
+            Ok(stroke) => {
+                work.strokes.push(stroke);
+                dimmed.push(Edit::SetDimmed {
+                    id: *id,
+                    dimmed: true,
+                });
+            }
+            Err(fault) => studio.notices.warn(fault.to_string()),
+        }
+    }
+    if let Some(work) = work.filter(|w| !w.strokes.is_empty()) {
+        studio.commit_with(work, dimmed, "Carry strokes into a painting");
+    }
+}
+
+/// A solid becomes a volume brush, a drawn line or stroke a line skeleton; a painting is gone on with.
 pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
     if carried.to != BRUSH {
         return;
@@ -23,10 +73,14 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
         paint_on(&mut studio, id);
         return;
     }
+    if objects.iter().any(|(_, o)| way(o).is_some()) {
+        draw(&mut studio, &objects);
+        return;
+    }
     for (_, object) in objects {
         let Some(recipe) = object.operand() else {
             studio.notices.warn(format!(
-                "{} is not closed, so it is no volume to paint with. Close it first.",
+                "{} is not closed, so it cannot be a brush: close it first, then carry it here again.",
                 object.name
             ));
             continue;

@@ -31,7 +31,7 @@ pub(crate) fn paint_on(studio: &mut Studio, id: ObjectId) -> bool {
     if canvas(object).is_none() {
         let Some(recipe) = object.operand() else {
             studio.notices.warn(format!(
-                "{} is not closed, so it cannot be painted on. Close it first.",
+                "{} is not closed and cannot be painted on: close it first.",
                 object.name
             ));
             return false;

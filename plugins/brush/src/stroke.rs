@@ -3,7 +3,7 @@
 use bevy::math::Affine3A;
 use bevy::prelude::*;
 use midair_field::{CANVAS_THRESHOLD, Node, Placement, Recipe, Skeleton, Stroke};
-use midair_studio::hands::Pose;
+use midair_studio::{hands::Pose, symmetry::Image};
 
 /// Why there is no stroke: one line with the way out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -192,6 +192,28 @@ pub fn held(recipe: &Recipe, pose: &Pose, size: f32) -> Placement {
         translation: pose.position - pose.rotation * (scale * middle),
         rotation: pose.rotation,
         scale: Vec3::splat(scale),
+    }
+}
+
+/// The image of a stroke under live symmetry, in a painting that stands there.
+pub fn mirrored(stroke: &Stroke, painting: &Placement, image: &Image) -> Stroke {
+    let own = &stroke.placement;
+    let stands = Placement {
+        translation: painting.affine().transform_point3(own.translation),
+        rotation: (painting.rotation * own.rotation).normalize(),
+        scale: painting.scale * own.scale,
+    };
+    let there = image.placement(&stands);
+    Stroke {
+        placement: Placement {
+            translation: painting
+                .affine()
+                .inverse()
+                .transform_point3(there.translation),
+            rotation: (painting.rotation.inverse() * there.rotation).normalize(),
+            scale: there.scale / painting.scale,
+        },
+        ..stroke.clone()
     }
 }
 

@@ -68,8 +68,14 @@ pub struct Studio<'w> {
 impl Studio<'_> {
     /// Makes a change one step that can be undone. Returns whether it was made.
     pub fn commit(&mut self, work: Work, name: &str) -> bool {
+        self.commit_with(work, Vec::new(), name)
+    }
+
+    /// The same with other edits in the same step.
+    pub fn commit_with(&mut self, work: Work, more: Vec<Edit>, name: &str) -> bool {
         commit(
             work,
+            more,
             name,
             &mut self.project,
             &mut self.easel,
@@ -109,7 +115,7 @@ impl Studio<'_> {
     }
 
     /// The painting, or the one that is to be.
-    fn base(&self, first: Vec3) -> Work {
+    pub(crate) fn base(&self, first: Vec3) -> Work {
         base(self.project.document(), &self.easel, &self.brush(), first)
     }
 
@@ -131,7 +137,7 @@ impl Studio<'_> {
         let made = match draft.phase(side) {
             Phase::Idle | Phase::Alt => return Ok(None),
             Phase::Leading { way, now } => {
-                work = self.base(now.truncate());
+                work = self.base(way.first().unwrap_or(now).truncate());
                 let mut all = way.clone();
                 if all.last() != Some(now) {
                     all.push(*now);
@@ -168,11 +174,16 @@ impl Studio<'_> {
         if draft.erase && work.painting.is_none() {
             return Err(StrokeFault::NothingToErase);
         }
-        work.strokes = vec![Stroke {
+        let made = Stroke {
             weight: made.weight * brush.strength,
             erase: draft.erase,
             ..made
-        }];
+        };
+        // What live symmetry makes of it is painted with it.
+        let images = self.project.images().iter();
+        let images = images.map(|i| stroke::mirrored(&made, &work.placement, i));
+        work.strokes = images.collect();
+        work.strokes.insert(0, made);
         Ok(Some(work))
     }
 }
@@ -232,6 +243,7 @@ fn moved(before: &Stroke, from: &Pose, now: &Pose, painting: &Placement) -> Stro
 /// Makes a change one step that can be undone. Returns whether it was made.
 fn commit(
     work: Work,
+    more: Vec<Edit>,
     name: &str,
     project: &mut Project,
     easel: &mut Easel,
@@ -257,7 +269,7 @@ fn commit(
                 gone: work.gone,
                 strokes: work.strokes,
             };
-            project.commit(name, [edit], notices)
+            project.commit(name, [edit].into_iter().chain(more), notices)
         }
         None => {
             let document = project.document();
@@ -272,7 +284,7 @@ fn commit(
                 id,
                 object: Arc::new(object),
             };
-            let done = project.commit(name, [add], notices);
+            let done = project.commit(name, [add].into_iter().chain(more), notices);
             if done {
                 easel.take(Some(id));
                 *selection = Selection(vec![id]);
