@@ -72,7 +72,7 @@ if [ "$to" = docs/pictures ]; then
     "$midair" play "assets/sessions/$name.ron" --shot "$to/$name.png"
     smaller "$to/$name.png"
   done
-  for of in operands-Dusk outline-Day tutorial-Dusk export-Paper; do
+  for of in outline-Dusk operands-Day; do
     picture "${of%-*}" "${of#*-}"
   done
 else
