@@ -46,7 +46,7 @@ fn wrong_usage_is_status_two() {
 #[test]
 fn what_this_machine_cannot_do_is_said_in_one_line() {
     let place = Place::new();
-    place.refused(&["--vr"], &["headset", "without --vr"]);
+    place.refused(&["--vr"], &["no headset", "flat screen"]);
     place.refused(&[], &["display"]);
     place.refused(&["a.midair"], &["a.midair"]);
     place.refused(&["bench", "--backend", "gpu"], &["GPU", "cpu"]);

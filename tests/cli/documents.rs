@@ -59,7 +59,7 @@ fn an_empty_document_exports_nothing_and_says_so() {
     place.done(&["check", "empty.midair"]);
     place.refused(
         &["export", "empty.midair", "--to", "out.stl"],
-        &["out.stl", "no visible object"],
+        &["out.stl", "nothing that can be seen", "add a solid"],
     );
 }
 

@@ -112,7 +112,10 @@ mod tests {
     #[test]
     fn every_key_that_is_named_has_a_name_with_hands() {
         let keys = Keys::default();
-        for step in read(COURSE).iter().flat_map(|t| &t.steps) {
+        let tasks = read(COURSE);
+        let steps = tasks.iter().flat_map(|t| &t.steps);
+        // A card for another way in is never shown to hands.
+        for step in steps.filter(|s| s.concerns(keys.way)) {
             let spelt = keys.spell(&step.say);
             assert!(!spelt.contains("(no key)"), "{spelt}");
         }

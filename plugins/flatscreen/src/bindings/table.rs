@@ -165,8 +165,8 @@ mod tests {
             bindings.conflicts(Control::FrameSelection)[0].0,
             Control::Hide
         );
-        // X is an axis while one scales.
-        bindings.bind(Control::Hide, Device::Keys, Binding::parse("X").ok());
+        // Z is an axis while one scales.
+        bindings.bind(Control::Hide, Device::Keys, Binding::parse("Z").ok());
         assert_eq!(bindings.conflicts(Control::Hide), []);
     }
 }

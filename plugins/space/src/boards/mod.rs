@@ -168,11 +168,13 @@ impl Board {
         texts
     }
 
-    /// The middle of the first text on it that begins so, or has it in it, in points.
+    /// The middle of the first text on it that is this one, or begins so, or has it in it, in points.
     pub fn find(&self, text: &str) -> Option<egui::Pos2> {
         let texts = self.texts();
-        let begins = texts.iter().find(|(t, _)| t.starts_with(text));
-        let found = begins.or_else(|| texts.iter().find(|(t, _)| t.contains(text)));
+        let first = |fits: fn(&str, &str) -> bool| texts.iter().find(|(t, _)| fits(t, text));
+        let found = first(|t, text| t == text)
+            .or_else(|| first(|t, text| t.starts_with(text)))
+            .or_else(|| first(|t, text| t.contains(text)));
         found.map(|(_, at)| *at)
     }
 }
