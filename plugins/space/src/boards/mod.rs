@@ -168,14 +168,12 @@ impl Board {
         texts
     }
 
-    /// The middle of the first text on it that is this one, or begins so, or has it in it, in points.
+    /// The middle of the shortest text on it that has this one in it, in points: a button "Save" rather than
+    /// a heading about saving.
     pub fn find(&self, text: &str) -> Option<egui::Pos2> {
         let texts = self.texts();
-        let first = |fits: fn(&str, &str) -> bool| texts.iter().find(|(t, _)| fits(t, text));
-        let found = first(|t, text| t == text)
-            .or_else(|| first(|t, text| t.starts_with(text)))
-            .or_else(|| first(|t, text| t.contains(text)));
-        found.map(|(_, at)| *at)
+        let with = texts.iter().filter(|(t, _)| t.contains(text));
+        with.min_by_key(|(t, _)| t.len()).map(|(_, at)| *at)
     }
 }
 
