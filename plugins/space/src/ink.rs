@@ -137,7 +137,8 @@ pub(crate) fn sheet(size: Vec2, radius: f32, uv: Vec2) -> Mesh {
     let normals = vec![[0.0, 0.0, 1.0]; positions.len()];
     Mesh::new(
         PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
+        // What hides outlines is looked at in the main world.
+        RenderAssetUsages::default(),
     )
     .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
     .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
