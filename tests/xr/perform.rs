@@ -17,6 +17,8 @@ use crate::wire::{Controller, Rig};
 const WAND: f32 = 0.08;
 /// Sessions are calm; nobody watches.
 const FASTER: f64 = 2.0;
+/// So much longer is a button held than a session says: a software renderer may draw five frames a second.
+const LONGER: f64 = 2.5;
 /// Between two packets.
 const TICK: Duration = Duration::from_millis(12);
 /// What may be between a pose sent and a pose that has arrived, in metres and radians.
@@ -64,7 +66,15 @@ impl Performer {
                         session.steps()[frame.step],
                         Step::Move { .. } | Step::Both { .. } | Step::Slide { .. }
                     );
-                    time += frame.dt.as_secs_f64() / if calm { FASTER } else { 1.0 };
+                    let held = matches!(session.steps()[frame.step], Step::Hold(..));
+                    let pace = if calm {
+                        FASTER
+                    } else if held {
+                        1.0 / LONGER
+                    } else {
+                        1.0
+                    };
+                    time += frame.dt.as_secs_f64() / pace;
                     if matches!(session.steps()[frame.step], Step::Wait(_))
                         && waited != Some(frame.step)
                     {
@@ -81,6 +91,10 @@ impl Performer {
                         self.hold(&frame.input);
                         self.rig.send()?;
                         self.arrived(app, "buttons").map_err(at)?;
+                        if held {
+                            // It is held from when the app has it.
+                            time = begin.elapsed().as_secs_f64();
+                        }
                     } else {
                         self.hold(&frame.input);
                         let due = Duration::from_secs_f64(time);

@@ -56,6 +56,11 @@ fn perform(what: &Performance, folder: &Path) -> Result<()> {
     let mut app = App::start(folder, &["--vr", "--record", &record])?;
     focus(&mut app)?;
     println!("     in focus after {:.1} s", app.focused);
+    // Who knows the way needs no card in it.
+    app.ask(&Command::Panel {
+        id: "tutorial".to_owned(),
+        open: false,
+    })?;
     performer.session(&mut app, &session)?;
     app.until("the work is done", 60.0, |now| now["busy"] == 0)?;
     app.ask(&Command::SaveAs(saved.clone().into()))?;
