@@ -7,7 +7,7 @@
 //! - [`smoothed`], [`bent`], [`cut`]: what can be done with ribs afterwards.
 //!
 //! Lengths are metres. A solid's mesh is closed, manifold and consistently wound whatever the ribs
-//! do; where the surface itself runs through itself, [`Solid::touches`] says so.
+//! do; where the surface runs through itself, [`touches`] finds it.
 //!
 //! What is *not* promised: that a mesh which runs through itself is the boundary of anything. A field
 //! baked from it is, since it goes by the winding number.

@@ -142,10 +142,10 @@ pub fn write_drawing(
         .map_err(|reason| refused(path, reason))
 }
 
-/// Whether [`write`] could put a file at `path`, before anything is made for it. Leaves nothing behind.
+/// Whether [`write()`] could put a file at `path`, before anything is made for it. Leaves nothing behind.
 ///
 /// # Errors
-/// What [`write`] would say of the name, the folder and the rights; a disk may still be full then.
+/// What [`write()`] would say of the name, the folder and the rights; a disk may still be full then.
 pub fn writable(path: &Path) -> Result<(), WriteError> {
     Format::from_path(path)
         .filter(|&format| format != Format::Gltf)
