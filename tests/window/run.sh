@@ -90,9 +90,9 @@ placed() {
 place_a_cube() {
   xdotool windowfocus "$window" || true
   tap l
-  click 68 450
+  click 48 335
   placed && return 0
-  click 68 450
+  click 48 335
   placed
 }
 xdotool mousemove 800 600
