@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 use bevy::math::{Quat, Vec2, Vec3};
 use midair_playback::{Beat, Expectation, Session, Step};
-use midair_studio::hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side};
+use midair_studio::hands::{Action, ActionSet, COUNTED, HOLD, HandFrame, HandsInput, Pose, Side};
 use serde_json::Value;
 
 use crate::stage::App;
@@ -17,8 +17,8 @@ use crate::wire::{Controller, Rig};
 const WAND: f32 = 0.08;
 /// Sessions are calm; nobody watches.
 const FASTER: f64 = 2.0;
-/// So much longer is a button held than a session says: a software renderer may draw five frames a second.
-const LONGER: f64 = 2.5;
+/// A button is held for so many frames more than it takes when none is late: a late one counts as a short one.
+const HELD: u64 = (HOLD / COUNTED) as u64 + 4;
 /// Between two packets.
 const TICK: Duration = Duration::from_millis(12);
 /// What may be between a pose sent and a pose that has arrived, in metres and radians.
@@ -52,6 +52,7 @@ impl Performer {
         let begin = Instant::now();
         let mut time = 0.0;
         let mut waited = None;
+        let mut holding = false;
         for beat in session.cursor() {
             match beat {
                 Beat::Frame(frame) => {
@@ -67,13 +68,7 @@ impl Performer {
                         Step::Move { .. } | Step::Both { .. } | Step::Slide { .. }
                     );
                     let held = matches!(session.steps()[frame.step], Step::Hold(..));
-                    let pace = if calm {
-                        FASTER
-                    } else if held {
-                        1.0 / LONGER
-                    } else {
-                        1.0
-                    };
+                    let pace = if calm { FASTER } else { 1.0 };
                     time += frame.dt.as_secs_f64() / pace;
                     if matches!(session.steps()[frame.step], Step::Wait(_))
                         && waited != Some(frame.step)
@@ -87,7 +82,9 @@ impl Performer {
                     if self.presses(&frame.input) {
                         self.settle(app).map_err(at)?;
                         // What lies at the hand is found in the frame after it is there.
-                        self.frames(app, 2)?;
+                        let lets_go = held && std::mem::replace(&mut holding, true);
+                        self.frames(app, if lets_go { HELD } else { 2 })?;
+                        holding &= !lets_go;
                         self.hold(&frame.input);
                         self.rig.send()?;
                         self.arrived(app, "buttons").map_err(at)?;

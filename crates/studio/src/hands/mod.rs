@@ -12,7 +12,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use action::{Action, ActionSet, Cross};
-pub use presses::{DOUBLE_PRESS, HOLD};
+pub use presses::{COUNTED, DOUBLE_PRESS, HOLD};
 
 use crate::StudioSet;
 use presses::Presses;

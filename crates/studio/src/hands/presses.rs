@@ -6,6 +6,8 @@ use super::{Action, ActionSet};
 pub const DOUBLE_PRESS: f32 = 0.4;
 /// A button down this many seconds is held.
 pub const HOLD: f32 = 0.35;
+/// So much of a frame counts towards a hold: while the app itself stands still, a tap is not yet held.
+pub const COUNTED: f32 = 1.0 / 30.0;
 
 /// What one hand's physical buttons stand for.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +66,7 @@ impl Button {
             return if double { Press::Double } else { Press::None };
         }
         if down {
-            self.held_for += dt;
+            self.held_for += dt.min(COUNTED);
             if self.held_for >= HOLD {
                 return Press::Held;
             }
@@ -95,6 +97,12 @@ mod tests {
             }
             assert!((t - HOLD).abs() <= 2.0 * dt, "{t} at {dt}");
         }
+    }
+
+    #[test]
+    fn a_frame_that_hangs_makes_no_hold_of_a_tap() {
+        let taps = run(&[(true, 0.01), (true, 0.8), (true, 0.3), (false, 0.3)]);
+        assert_eq!(taps[3], Press::Tap);
     }
 
     #[test]

@@ -3,10 +3,7 @@
 //! Trigger: the other hand's (alt). Cross ←: undo, →: redo, ↑: save what is touched, ↓: delete it. A menu button that
 //! was held for one of these is no press of the menu.
 
-use midair_studio::hands::{Action, ActionSet};
-
-/// Seconds after which a menu button that was used for nothing is held, as with two hands.
-const HOLD: f32 = 0.35;
+use midair_studio::hands::{Action, ActionSet, COUNTED, HOLD};
 
 /// What the menu button of the only hand is doing.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +26,7 @@ impl OneHand {
             return (mine, other);
         }
         let held = self.held_for.get_or_insert(0.0);
-        *held += dt;
+        *held += dt.min(COUNTED);
         for (own, becomes) in [
             (Action::Left, Action::Undo),
             (Action::Right, Action::Redo),
