@@ -2,24 +2,29 @@
 //!
 //! A test that drives real devices cannot count frames: it waits until what it did has arrived. `said.jsonl` gets a line of
 //! JSON for each frame; `asks.ron` is read as it grows, a command a line, and asked for as a panel
-//! would.
+//! would. Two lines are for the test alone: `boards` has the panels of the room told from then on, with the place of each word,
+//! and `eyes FILE.png` takes a picture of what both eyes see in the headset.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use midair_openxr::Life;
 use midair_openxr::input::Controllers;
 use midair_playback::{Arrivals, Parts, PartsPlugin};
+use midair_space::boards::Board;
+use midair_space::{Boards, Wands};
 use midair_studio::StudioSet;
 use midair_studio::command::Command;
-use midair_studio::hands::{Hands, HandsInput, Side, WriteHands};
+use midair_studio::hands::{ActionSet, Hands, HandsInput, Side, WriteHands};
 use midair_studio::notice::Notices;
 use midair_studio::panel::Panels;
 use midair_studio::project::{Project, Selection};
 use midair_studio::show::Drafts;
 use midair_studio::tools::Tools;
+use midair_studio::world::WorldView;
 use serde::Serialize;
 
 /// Talks to a test by files in a folder.
@@ -48,8 +53,10 @@ impl Plugin for RehearsalPlugin {
             rest: String::new(),
             asked: 0,
             frames: 0,
+            boards: false,
         })
         .init_resource::<Arrivals>()
+        .init_resource::<EyesSeen>()
         .add_plugins(PartsPlugin)
         .add_systems(Update, hear.in_set(StudioSet::Gather).before(WriteHands))
         .add_systems(First, count)
@@ -67,6 +74,8 @@ struct Talk {
     /// Commands asked for so far.
     asked: usize,
     frames: u64,
+    /// Whether boards are told.
+    boards: bool,
 }
 
 /// What stands, as a test sees it.
@@ -87,6 +96,22 @@ struct Standing<'a> {
     warnings: &'a [String],
     info: Vec<&'a str>,
     hands: [HandSaid; 2],
+    /// Only where they were asked for.
+    boards: Vec<BoardSaid>,
+    /// Pictures of both eyes that are written.
+    eyes: usize,
+}
+
+/// One panel of the room, in metres of world.
+#[derive(Serialize)]
+struct BoardSaid {
+    id: String,
+    shown: bool,
+    /// Its middle, and which way it faces.
+    at: [f32; 3],
+    front: [f32; 3],
+    /// What is written on it, and where.
+    texts: Vec<(String, [f32; 3])>,
 }
 
 /// One hand, as tools are given it.
@@ -97,7 +122,11 @@ struct HandSaid {
     /// Position and quaternion.
     pose: [f32; 7],
     down: Vec<String>,
+    /// What a panel has of what is pressed.
+    captured: Vec<String>,
     swipe: Option<[f32; 2]>,
+    /// The panel that the wand is on.
+    on: String,
 }
 
 /// Only frames in the headset count.
@@ -114,8 +143,10 @@ fn figures(talk: Res<Talk>, parts: Res<Parts>) {
 
 fn hear(
     mut talk: ResMut<Talk>,
-    mut commands: MessageWriter<Command>,
+    mut asks: MessageWriter<Command>,
     mut notices: ResMut<Notices>,
+    mut seen: ResMut<EyesSeen>,
+    mut commands: Commands,
 ) {
     let Ok(mut file) = File::open(&talk.asks) else {
         return;
@@ -129,14 +160,84 @@ fn hear(
     talk.rest.push_str(&new);
     while let Some(end) = talk.rest.find('\n') {
         let line: String = talk.rest.drain(..=end).collect();
-        match ron::from_str::<Command>(line.trim()) {
-            Ok(command) => {
-                commands.write(command);
+        let line = line.trim();
+        if line == "boards" {
+            talk.boards = true;
+        } else if let Some(file) = line.strip_prefix("eyes ") {
+            seen.look(file.into(), &mut commands);
+        } else {
+            match ron::from_str::<Command>(line) {
+                Ok(command) => {
+                    asks.write(command);
+                }
+                Err(fault) => notices.warn(format!("asks.ron: {line}: {fault}")),
             }
-            Err(fault) => notices.warn(format!("asks.ron: {}: {fault}", line.trim())),
         }
         talk.asked += 1;
     }
+}
+
+/// The panels of the room, as a wand would find them.
+fn boards(world: &World) -> Vec<BoardSaid> {
+    let (Some(boards), Some(view)) = (
+        world.get_resource::<Boards>(),
+        world.get_resource::<WorldView>(),
+    ) else {
+        return Vec::new();
+    };
+    let out = view.world_from_room();
+    let said = |board: &Board| BoardSaid {
+        id: format!("{:?}", board.id),
+        shown: board.shown,
+        at: out.point(board.pose.position).to_array(),
+        front: (out.rotation * board.pose.rotation * Vec3::Z).to_array(),
+        texts: board
+            .texts()
+            .into_iter()
+            .map(|(text, at)| (text, out.point(board.at(at)).to_array()))
+            .collect(),
+    };
+    boards.all().map(said).collect()
+}
+
+/// Pictures of what the eyes see.
+#[derive(Resource, Default)]
+struct EyesSeen {
+    written: usize,
+    halves: [Option<Image>; 2],
+}
+
+impl EyesSeen {
+    /// Both eyes of one frame, as they are handed to the runtime, side by side.
+    fn look(&mut self, file: PathBuf, commands: &mut Commands) {
+        self.halves = default();
+        for eye in 0..2 {
+            let file = file.clone();
+            commands
+                .spawn(Screenshot::texture_view(midair_openxr::eye(eye)))
+                .observe(
+                    move |shot: On<ScreenshotCaptured>, mut seen: ResMut<EyesSeen>| {
+                        seen.halves[eye as usize] = Some(shot.image.clone());
+                        let [Some(left), Some(right)] = &seen.halves else {
+                            return;
+                        };
+                        match side_by_side(left, right, &file) {
+                            Ok(()) => seen.written += 1,
+                            Err(fault) => eprintln!("midair: {}: {fault}", file.display()),
+                        }
+                    },
+                );
+        }
+    }
+}
+
+fn side_by_side(left: &Image, right: &Image, file: &Path) -> anyhow::Result<()> {
+    let [left, right] = [left, right].map(|i| i.clone().try_into_dynamic());
+    let (left, right) = (left?.to_rgb8(), right?.to_rgb8());
+    let mut both = image::RgbImage::new(left.width() + right.width(), left.height());
+    image::imageops::replace(&mut both, &left, 0, 0);
+    image::imageops::replace(&mut both, &right, i64::from(left.width()), 0);
+    Ok(both.save(file)?)
 }
 
 fn tell(world: &mut World) {
@@ -151,6 +252,8 @@ fn tell(world: &mut World) {
     let hands = world.resource::<Hands>();
     let controllers = world.get_resource::<Controllers>();
     let history = project.history();
+    let wands = world.get_resource::<Wands>();
+    let named = |down: ActionSet| down.iter().map(|a| format!("{a:?}")).collect();
     let hand = |side: Side| {
         let frame = &input.frames[side as usize];
         let pose = hands.get(side).pose;
@@ -160,8 +263,12 @@ fn tell(world: &mut World) {
             profile: controllers.map_or("", |c| c.side(side).profile),
             tracked: hands.get(side).tracked,
             pose: [x, y, z, a, b, c, d],
-            down: frame.down.iter().map(|a| format!("{a:?}")).collect(),
+            down: named(frame.down),
+            captured: wands.map_or_else(Vec::new, |w| named(w.get(side).captured())),
             swipe: frame.swipe.map(|s| s.to_array()),
+            on: wands
+                .and_then(|w| w.get(side).met)
+                .map_or_else(String::new, |met| format!("{:?}", met.board)),
         }
     };
     let standing = Standing {
@@ -186,6 +293,12 @@ fn tell(world: &mut World) {
         warnings: notices.warnings(),
         info: notices.recent(1e9).map(|n| n.text.as_str()).collect(),
         hands: [hand(Side::Left), hand(Side::Right)],
+        boards: if world.resource::<Talk>().boards {
+            boards(world)
+        } else {
+            Vec::new()
+        },
+        eyes: world.resource::<EyesSeen>().written,
     };
     let Ok(line) = serde_json::to_string(&standing) else {
         return;

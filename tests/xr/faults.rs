@@ -8,49 +8,13 @@ use midair_studio::command::Command;
 use midair_studio::hands::Side;
 use serde_json::Value;
 
+use crate::calls::{FRAME, START};
 use crate::life::{focus, quit};
 use crate::perform::Performer;
 use crate::stage::{App, Runtime};
 
 /// Where the layer reads what fails.
 const FAIL: &str = "/out/fail";
-
-/// Calls of every frame: refused, the session goes on.
-const FRAME: [&str; 12] = [
-    "xrWaitFrame",
-    "xrBeginFrame",
-    "xrEndFrame",
-    "xrAcquireSwapchainImage",
-    "xrWaitSwapchainImage",
-    "xrReleaseSwapchainImage",
-    "xrLocateViews",
-    "xrLocateSpace",
-    "xrSyncActions",
-    "xrGetActionStateBoolean",
-    "xrGetActionStateFloat",
-    "xrGetActionStateVector2f",
-];
-
-/// Calls of a start: refused, there is no session, and another try follows.
-const START: [&str; 17] = [
-    "xrCreateInstance",
-    "xrGetInstanceProperties",
-    "xrGetSystem",
-    "xrGetSystemProperties",
-    "xrGetVulkanGraphicsRequirements2KHR",
-    "xrGetVulkanGraphicsDevice2KHR",
-    "xrCreateSession",
-    "xrEnumerateViewConfigurationViews",
-    "xrEnumerateSwapchainFormats",
-    "xrCreateSwapchain",
-    "xrEnumerateSwapchainImages",
-    "xrEnumerateEnvironmentBlendModes",
-    "xrStringToPath",
-    "xrCreateActionSet",
-    "xrCreateAction",
-    "xrAttachSessionActionSets",
-    "xrCreateActionSpace",
-];
 
 fn fail(lines: &str) -> Result<()> {
     fs::write(FAIL, lines).context(FAIL)
@@ -89,12 +53,12 @@ pub fn each_call(folder: &Path) -> Result<()> {
         fail(&format!("{call} -1\n"))?;
         // A refused view has nothing to say: the eyes stay where they are.
         if call != "xrLocateViews" {
-            app.until(&format!("{call} is spoken of"), 10.0, |now| {
+            app.until(&format!("{call} is spoken of"), |now| {
                 warnings(now) > before && now["warnings"].to_string().contains(call)
             })?;
         }
         fail("")?;
-        app.until(&format!("it goes on after {call}"), 20.0, |now| {
+        app.until(&format!("it goes on after {call}"), |now| {
             now["life"] == "Focused"
                 && Side::BOTH
                     .iter()
@@ -110,7 +74,7 @@ pub fn each_call(folder: &Path) -> Result<()> {
     );
     // The one that ends everything.
     fail("xrPollEvent -13\n")?;
-    app.until("the runtime is lost", 10.0, |now| now["life"] == "Lost")?;
+    app.until("the runtime is lost", |now| now["life"] == "Lost")?;
     for call in START {
         let code = if call == "xrGetSystem" { -35 } else { -1 };
         let before = warnings(&app.now);
@@ -120,7 +84,7 @@ pub fn each_call(folder: &Path) -> Result<()> {
             "xrGetSystem" => "no headset is connected",
             _ => call,
         };
-        app.until(&format!("{call} is spoken of"), 15.0, |now| {
+        app.until(&format!("{call} is spoken of"), |now| {
             now["warnings"]
                 .as_array()
                 .into_iter()

@@ -3,55 +3,47 @@
 //! `/out/fail` holds lines like `xrLocateSpace -1`: that function, and the result it gives. Every other call goes through.
 //! The loader takes it up by `XR_API_LAYER_PATH` and `XR_ENABLE_API_LAYERS=XR_APILAYER_MIDAIR_fail`.
 
+mod calls;
+
 use std::ffi::{CStr, c_char};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use calls::{FRAME, START};
 use openxr::sys;
 use sys::loader::{
     ApiLayerCreateInfo, CURRENT_LOADER_API_LAYER_VERSION, XrNegotiateApiLayerRequest,
     XrNegotiateLoaderInfo,
 };
 
-/// What can fail. (`xrCreateInstance` can as well; it goes another way.)
-const NAMES: [&str; 36] = [
+/// Others that can be refused.
+const OTHER: [&str; 8] = [
     "xrPollEvent",
-    "xrWaitFrame",
-    "xrBeginFrame",
-    "xrEndFrame",
-    "xrAcquireSwapchainImage",
-    "xrWaitSwapchainImage",
-    "xrReleaseSwapchainImage",
-    "xrLocateViews",
-    "xrLocateSpace",
-    "xrSyncActions",
-    "xrGetActionStateBoolean",
-    "xrGetActionStateFloat",
-    "xrGetActionStateVector2f",
     "xrGetCurrentInteractionProfile",
     "xrApplyHapticFeedback",
     "xrBeginSession",
     "xrEndSession",
     "xrRequestExitSession",
-    "xrGetInstanceProperties",
-    "xrGetSystem",
-    "xrGetSystemProperties",
-    "xrGetVulkanGraphicsRequirements2KHR",
-    "xrGetVulkanGraphicsDevice2KHR",
-    "xrCreateSession",
-    "xrEnumerateViewConfigurationViews",
-    "xrEnumerateSwapchainFormats",
-    "xrCreateSwapchain",
-    "xrEnumerateSwapchainImages",
-    "xrEnumerateEnvironmentBlendModes",
-    "xrStringToPath",
-    "xrCreateActionSet",
-    "xrCreateAction",
     "xrSuggestInteractionProfileBindings",
-    "xrAttachSessionActionSets",
-    "xrCreateActionSpace",
     "xrCreateReferenceSpace",
 ];
+
+/// What can fail. (`xrCreateInstance`, the first of a start, goes another way.)
+const NAMES: [&str; FRAME.len() + START.len() + OTHER.len()] = {
+    let mut names = [""; FRAME.len() + START.len() + OTHER.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = if i < FRAME.len() {
+            FRAME[i]
+        } else if i < FRAME.len() + START.len() {
+            START[i - FRAME.len()]
+        } else {
+            OTHER[i - FRAME.len() - START.len()]
+        };
+        i += 1;
+    }
+    names
+};
 
 static REAL: [AtomicUsize; NAMES.len()] = [const { AtomicUsize::new(0) }; NAMES.len()];
 static NEXT: AtomicUsize = AtomicUsize::new(0);
@@ -89,7 +81,7 @@ macro_rules! shims {
 }
 
 const SHIMS: [Call; NAMES.len()] = shims!(
-    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35
+    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36
 );
 
 unsafe extern "system" fn get_instance_proc_addr(

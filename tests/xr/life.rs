@@ -4,8 +4,6 @@ use serde_json::json;
 use std::fs;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
-use std::thread::sleep;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use bevy::math::{Quat, Vec3};
@@ -19,12 +17,10 @@ use crate::stage::{App, Guard, Runtime, midair, until};
 
 /// Waits until the controllers are the app's.
 pub fn focus(app: &mut App) -> Result<f64> {
-    let seconds = app.until("the headset shows Midair", 90.0, |now| {
-        now["life"] == "Focused"
-    })?;
+    let seconds = app.until("the headset shows Midair", |now| now["life"] == "Focused")?;
     let age = app.age();
     // Where the processor draws, the first frame waits for its shaders.
-    app.until("frames are drawn", 120.0, |now| {
+    app.until("frames are drawn", |now| {
         now["life"] == "Focused" && (0..2).any(|i| now["hands"][i]["profile"] != "")
     })?;
     app.focused = age;
@@ -42,7 +38,7 @@ pub fn cube(performer: &mut Performer, app: &mut App, at: Vec3) -> Result<()> {
         component: "solid/cube".to_owned(),
         side: Side::Right,
     })?;
-    app.until("a cube is there", 30.0, |now| {
+    app.until("a cube is there", |now| {
         now["objects"] == before + 1 && now["busy"] == 0
     })?;
     Ok(())
@@ -51,9 +47,10 @@ pub fn cube(performer: &mut Performer, app: &mut App, at: Vec3) -> Result<()> {
 /// Ends the app, whatever is not saved.
 pub fn quit(app: &mut App) -> Result<()> {
     app.ask(&Command::Leave(Then::Quit))?;
-    if app.end(3.0).is_err() {
+    let asks = |now: &Value| now["panels"].to_string().contains("\"leave\"");
+    if !app.ends_or(asks)? {
         app.ask(&Command::Answer(Answer::Discard))?;
-        app.end(20.0)?;
+        app.ends_or(|_| false)?;
     }
     Ok(())
 }
@@ -75,10 +72,10 @@ pub fn killed(folder: &Path) -> Result<()> {
     cube(&mut performer, &mut app, at)?;
     performer.press(&mut app, Side::Right, Action::Grab, true)?;
     performer.go(&mut app, Side::Right, Pose::at(at + 0.1 * Vec3::X))?;
-    app.until("the cube is dragged", 10.0, |now| now["dragging"] == true)?;
+    app.until("the cube is dragged", |now| now["dragging"] == true)?;
     let before = app.now["edits"].as_u64().context("edits")?;
     runtime.kill()?;
-    let gone = app.until("the app has noticed", 20.0, |now| {
+    let gone = app.until("the app has noticed", |now| {
         now["life"] == "Lost" && now["dragging"] == false
     })?;
     let after = app.now["edits"].as_u64().context("edits")?;
@@ -91,29 +88,25 @@ pub fn killed(folder: &Path) -> Result<()> {
     }
     // Flat, it goes on.
     app.ask(&Command::Undo)?;
-    app.until("undo works", 10.0, |now| now["redo"] == 1)?;
+    app.until("undo works", |now| now["redo"] == 1)?;
     app.ask(&Command::Redo)?;
-    app.until("redo works", 10.0, |now| now["redo"] == 0)?;
+    app.until("redo works", |now| now["redo"] == 0)?;
     let mut runtime = Runtime::remote()?;
     let mut performer = Performer::new()?;
-    let back = app.until("it is in the headset again", 40.0, |now| {
-        now["life"] == "Focused"
-    })?;
+    let back = app.until("it is in the headset again", |now| now["life"] == "Focused")?;
     println!("     in the headset again {back:.1} s after the runtime was started again");
     let edits = app.now["edits"].as_u64().context("edits")?;
     cube(&mut performer, &mut app, at + 0.6 * Vec3::X)?;
     performer.press(&mut app, Side::Right, Action::Grab, true)?;
     performer.go(&mut app, Side::Right, Pose::at(at + 0.7 * Vec3::X))?;
     performer.press(&mut app, Side::Right, Action::Grab, false)?;
-    app.until("the hands work again", 10.0, |now| {
-        now["edits"] == edits + 2
-    })?;
+    app.until("the hands work again", |now| now["edits"] == edits + 2)?;
     app.ask(&Command::SaveAs(saved.clone().into()))?;
-    app.until("it is saved", 20.0, |now| {
+    app.until("it is saved", |now| {
         now["busy"] == 0 && fs::metadata(&saved).is_ok()
     })?;
     // An end that is asked for would be in the recording as well.
-    app.kill()?;
+    app.kill(&record)?;
     if !runtime.is_alive() {
         bail!("the runtime died");
     }
@@ -147,7 +140,7 @@ pub fn tracking(folder: &Path) -> Result<()> {
             hand.pose.position = Vec3::NAN;
         }
         performer.rig.send()?;
-        app.until(&format!("a hand that {lost} is not tracked"), 10.0, |now| {
+        app.until(&format!("a hand that {lost} is not tracked"), |now| {
             now["hands"][1]["tracked"] == false
         })?;
         if app.now["hands"][1]["pose"] != pose {
@@ -173,28 +166,28 @@ pub fn alone(folder: &Path) -> Result<()> {
     performer.rig.send()?;
     let mut app = App::start(folder, &["--vr"])?;
     focus(&mut app)?;
-    app.until("it says that one controller is alone", 30.0, |now| {
+    app.until("it says that one controller is alone", |now| {
         says(now, "Only the right controller is on")
     })?;
     let right = &mut performer.rig.hands[1];
     right.b = true;
     performer.rig.send()?;
-    sleep(Duration::from_millis(150));
+    performer.frames(&mut app, 3)?;
     performer.rig.hands[1].stick.x = -1.0;
     performer.rig.send()?;
-    app.until("menu and left is undo", 10.0, |now| {
+    app.until("menu and left is undo", |now| {
         now["hands"][1]["down"] == json!(["Undo"])
     })?;
     performer.rig.hands[1].stick.x = 0.0;
     performer.rig.hands[1].trigger = 1.0;
     performer.rig.send()?;
-    app.until("menu and trigger is the other hand's", 10.0, |now| {
+    app.until("menu and trigger is the other hand's", |now| {
         now["hands"][0]["down"] == json!(["Act"]) && now["hands"][1]["down"] == json!([])
     })?;
     let right = &mut performer.rig.hands[1];
     (right.trigger, right.b) = (0.0, false);
     performer.rig.send()?;
-    app.until("it was no press of the menu", 10.0, |now| {
+    app.until("it was no press of the menu", |now| {
         now["hands"][0]["down"] == json!([]) && now["hands"][1]["down"] == json!([])
     })?;
     if app.now["panels"].to_string().contains("\"library\"") {
@@ -203,7 +196,7 @@ pub fn alone(folder: &Path) -> Result<()> {
     // The other one is switched on.
     performer.rig.hands[0].active = true;
     performer.rig.send()?;
-    app.until("the other hand is there", 10.0, |now| {
+    app.until("the other hand is there", |now| {
         now["hands"][0]["tracked"] == true
     })?;
     quit(&mut app)
@@ -225,14 +218,14 @@ pub fn attention(folder: &Path) -> Result<()> {
         .spawn()
         .context("hello_xr")?;
     let other = Guard(other);
-    until("the other window is there", 20.0, || {
+    until("the other window is there", || {
         Ok(client("HelloXR")?.is_some())
     })?;
     take_focus("HelloXR")?;
-    app.until("the controllers are another window's", 20.0, |now| {
+    app.until("the controllers are another window's", |now| {
         now["life"] == "Shown" || now["life"] == "Asleep"
     })?;
-    app.until("nothing is held", 10.0, |now| {
+    app.until("nothing is held", |now| {
         now["hands"][1]["down"] == json!([]) && now["dragging"] == false
     })?;
     drop(other);
@@ -242,7 +235,7 @@ pub fn attention(folder: &Path) -> Result<()> {
     let undo = app.now["undo"].clone();
     for round in 0..2 {
         app.ask(&Command::Headset(false))?;
-        app.until("the headset is left", 20.0, |now| now["life"] == "Flat")?;
+        app.until("the headset is left", |now| now["life"] == "Flat")?;
         if app.now["undo"] != undo {
             bail!("leaving changed the work: {}", app.now);
         }
@@ -334,7 +327,7 @@ pub fn from_flat(folder: &Path) -> Result<()> {
     let _display = crate::stage::display()?;
     let window = [("DISPLAY", ":7")];
     let mut app = App::start_with(folder, &["--vr"], &window)?;
-    app.until("the flat screen, with a line", 90.0, |now| {
+    app.until("the flat screen, with a line", |now| {
         now["life"] == "None" && says(now, "No headset: no OpenXR runtime answers")
     })?;
     app.ask(&Command::ToggleLibrary)?;
@@ -342,12 +335,12 @@ pub fn from_flat(folder: &Path) -> Result<()> {
         component: "solid/cube".to_owned(),
         side: Side::Right,
     })?;
-    app.until("a cube is there", 30.0, |now| {
+    app.until("a cube is there", |now| {
         now["objects"] == 1 && now["undo"] == 1 && now["busy"] == 0
     })?;
     let before = app.now["warnings"].as_array().map_or(0, Vec::len);
     app.ask(&Command::Headset(true))?;
-    app.until("it says that there is none", 20.0, |now| {
+    app.until("it says that there is none", |now| {
         now["warnings"].as_array().map_or(0, Vec::len) == before + 1
     })?;
     let _runtime = Runtime::remote()?;
@@ -356,11 +349,11 @@ pub fn from_flat(folder: &Path) -> Result<()> {
     app.counts_again();
     let seconds = focus(&mut app)?;
     println!("     in the headset {seconds:.1} s after it was asked for");
-    app.until("the work is there, with its undo list", 30.0, |now| {
+    app.until("the work is there, with its undo list", |now| {
         now["objects"] == 1 && now["undo"] == 1
     })?;
     performer.settle(&mut app)?;
     app.ask(&Command::Undo)?;
-    app.until("undo works", 10.0, |now| now["objects"] == 0)?;
+    app.until("undo works", |now| now["objects"] == 0)?;
     quit(&mut app)
 }

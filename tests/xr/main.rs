@@ -3,6 +3,7 @@
 //! Started by `tests/xr/run.sh` in a root file system of its own; without one it says so and ends. Arguments name
 //! scenarios; all are run where there are none. `scenarios/NAME.ron` says what is performed.
 
+mod calls;
 mod faults;
 mod frames;
 mod life;
@@ -61,41 +62,55 @@ fn main() -> ExitCode {
     };
     let mut all = all;
     all.extend(own());
-    let (mut passed, mut failed) = (0, 0);
+    let (mut passed, mut again, mut failed) = (0, Vec::new(), 0);
     for scenario in all {
         if !wanted.is_empty() && !wanted.contains(&scenario.name) {
             continue;
         }
-        let folder = Path::new(stage::OUT).join(&scenario.name);
-        let _ = std::fs::remove_dir_all(&folder);
-        let begun = Instant::now();
-        let done = std::fs::create_dir_all(&folder)
-            .map_err(Into::into)
-            .and_then(|()| (scenario.run)(&folder));
-        let seconds = begun.elapsed().as_secs_f64();
-        match done {
-            Ok(()) => {
-                passed += 1;
-                println!("ok   {} ({seconds:.1} s)", scenario.name);
-            }
-            Err(error) => {
-                failed += 1;
-                println!("FAIL {} ({seconds:.1} s): {error:#}", scenario.name);
-                for log in ["midair.log", "../monado.log"] {
-                    let text = std::fs::read_to_string(folder.join(log)).unwrap_or_default();
-                    let lines: Vec<_> = text.lines().collect();
-                    println!("--- {log}, its end:");
-                    for line in &lines[lines.len().saturating_sub(25)..] {
-                        println!("{line}");
-                    }
-                }
-            }
+        if once(&scenario) {
+            passed += 1;
+            continue;
+        }
+        // The runtime and the software renderer are not ours: one more try tells a fault from a mishap, and is said.
+        println!("     {}: once more", scenario.name);
+        if once(&scenario) {
+            again.push(scenario.name);
+        } else {
+            failed += 1;
         }
     }
-    println!("{passed} passed, {failed} failed");
-    if failed == 0 && passed > 0 {
+    println!("{} passed, {failed} failed", passed + again.len());
+    if !again.is_empty() {
+        println!("only at the second try: {}", again.join(", "));
+    }
+    if failed == 0 && passed + again.len() > 0 {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
     }
+}
+
+/// Runs a scenario and says what came of it.
+fn once(scenario: &Scenario) -> bool {
+    let folder = Path::new(stage::OUT).join(&scenario.name);
+    let _ = std::fs::remove_dir_all(&folder);
+    let begun = Instant::now();
+    let done = std::fs::create_dir_all(&folder)
+        .map_err(Into::into)
+        .and_then(|()| (scenario.run)(&folder));
+    let seconds = begun.elapsed().as_secs_f64();
+    let Err(error) = done else {
+        println!("ok   {} ({seconds:.1} s)", scenario.name);
+        return true;
+    };
+    println!("FAIL {} ({seconds:.1} s): {error:#}", scenario.name);
+    for log in ["midair.log", "../monado.log"] {
+        let text = std::fs::read_to_string(folder.join(log)).unwrap_or_default();
+        let lines: Vec<_> = text.lines().collect();
+        println!("--- {log}, its end:");
+        for line in &lines[lines.len().saturating_sub(25)..] {
+            println!("{line}");
+        }
+    }
+    false
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Result, bail};
 use bevy::math::{Quat, Vec2, Vec3};
@@ -15,12 +15,11 @@ use crate::wire::{Controller, Rig};
 
 /// Metres from where a controller aims from to the tip of its wand.
 const WAND: f32 = 0.08;
-/// Sessions are calm; nobody watches.
-const FASTER: f64 = 2.0;
+/// So much of a session is done in one frame of the app: of a stroke, and of a hand on its way to something.
+const STROKE: Duration = Duration::from_millis(33);
+const REACH: Duration = Duration::from_millis(100);
 /// A button is held for so many frames more than it takes when none is late: a late one counts as a short one.
 const HELD: u64 = (HOLD / COUNTED) as u64 + 4;
-/// Between two packets.
-const TICK: Duration = Duration::from_millis(12);
 /// What may be between a pose sent and a pose that has arrived, in metres and radians.
 const NEAR: (f32, f32) = (1e-3, 5e-3);
 
@@ -47,32 +46,22 @@ impl Performer {
         Ok(Self { rig, want })
     }
 
-    /// Performs a whole session.
+    /// Performs a whole session. It goes on with the app's frames: one that is late makes it slower and nothing coarser.
     pub fn session(&mut self, app: &mut App, session: &Arc<Session>) -> Result<()> {
-        let begin = Instant::now();
-        let mut time = 0.0;
+        let mut gone = Duration::ZERO;
         let mut waited = None;
         let mut holding = false;
         for beat in session.cursor() {
             match beat {
                 Beat::Frame(frame) => {
+                    let step = &session.steps()[frame.step];
                     if !frame.commands.is_empty() {
                         self.settle(app)?;
                         for command in &frame.commands {
                             app.ask(command)?;
                         }
                     }
-                    // A press that is held or doubled has its own time.
-                    let calm = matches!(
-                        session.steps()[frame.step],
-                        Step::Move { .. } | Step::Both { .. } | Step::Slide { .. }
-                    );
-                    let held = matches!(session.steps()[frame.step], Step::Hold(..));
-                    let pace = if calm { FASTER } else { 1.0 };
-                    time += frame.dt.as_secs_f64() / pace;
-                    if matches!(session.steps()[frame.step], Step::Wait(_))
-                        && waited != Some(frame.step)
-                    {
+                    if matches!(step, Step::Wait(_)) && waited != Some(frame.step) {
                         // What is waited for in a session is a matter of frames as well.
                         waited = Some(frame.step);
                         self.settle(app)?;
@@ -82,33 +71,38 @@ impl Performer {
                     if self.presses(&frame.input) {
                         self.settle(app).map_err(at)?;
                         // What lies at the hand is found in the frame after it is there.
+                        let held = matches!(step, Step::Hold(..));
                         let lets_go = held && std::mem::replace(&mut holding, true);
                         self.frames(app, if lets_go { HELD } else { 2 })?;
                         holding &= !lets_go;
                         self.hold(&frame.input);
                         self.rig.send()?;
                         self.arrived(app, "buttons").map_err(at)?;
-                        if held {
-                            // It is held from when the app has it.
-                            time = begin.elapsed().as_secs_f64();
-                        }
-                    } else {
-                        self.hold(&frame.input);
-                        let due = Duration::from_secs_f64(time);
-                        let ahead = due.saturating_sub(begin.elapsed());
-                        if ahead >= TICK {
-                            self.rig.send()?;
-                            sleep(ahead);
-                        }
+                        continue;
+                    }
+                    self.hold(&frame.input);
+                    if !matches!(
+                        step,
+                        Step::Move { .. } | Step::Both { .. } | Step::Slide { .. }
+                    ) {
+                        // Holds and double presses are told by time.
+                        sleep(frame.dt);
+                        continue;
+                    }
+                    gone += frame.dt;
+                    let draws = self.want.iter().any(|hand| hand.down != ActionSet::NONE);
+                    if gone >= if draws { STROKE } else { REACH } {
+                        gone = Duration::ZERO;
+                        self.rig.send()?;
+                        self.frames(app, 1)?;
                     }
                 }
                 Beat::Check(step) => {
                     self.settle(app)?;
                     if let Step::Expect(expected) = &session.steps()[step] {
                         let what = session.place(step).to_string();
-                        app.until(&what, 30.0, |now| met(expected, now))?;
+                        app.until(&what, |now| met(expected, now))?;
                     }
-                    time = begin.elapsed().as_secs_f64();
                 }
             }
         }
@@ -139,7 +133,7 @@ impl Performer {
     /// Waits until the app has drawn so many more.
     pub fn frames(&mut self, app: &mut App, count: u64) -> Result<()> {
         let until = app.now["frame"].as_u64().unwrap_or(0) + count;
-        app.until("frames go on", 20.0, |now| {
+        app.until("frames go on", |now| {
             now["frame"].as_u64().unwrap_or(0) >= until
         })?;
         Ok(())
@@ -147,7 +141,7 @@ impl Performer {
 
     fn arrived(&mut self, app: &mut App, what: &str) -> Result<()> {
         let want = self.want;
-        app.until(&format!("{what} arrive"), 20.0, |now| {
+        app.until(&format!("{what} arrive"), |now| {
             Side::BOTH
                 .iter()
                 .all(|&s| is_there(&want[s as usize], &now["hands"][s as usize]))
@@ -221,13 +215,16 @@ fn put(side: Side, frame: &HandFrame, hand: &mut Controller) {
 /// Whether the app has a hand as it is to be.
 fn is_there(want: &HandFrame, is: &Value) -> bool {
     let down: ActionSet = physical(want.down);
-    let names: Vec<_> = down.iter().map(|a| format!("{a:?}")).collect();
-    let said: Vec<_> = is["down"]
-        .as_array()
-        .into_iter()
+    let mut names: Vec<_> = down.iter().map(|a| format!("{a:?}")).collect();
+    // A panel that the wand is on has it, or else the tool.
+    let mut said: Vec<_> = ["down", "captured"]
+        .iter()
+        .filter_map(|whose| is[whose].as_array())
         .flatten()
         .filter_map(Value::as_str)
         .collect();
+    names.sort_unstable();
+    said.sort_unstable();
     if names != said {
         return false;
     }

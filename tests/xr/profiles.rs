@@ -4,7 +4,7 @@ use serde_json::json;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use bevy::math::Vec2;
 use midair_studio::hands::{Action, Side};
 
@@ -81,7 +81,7 @@ pub fn index(folder: &Path) -> Result<()> {
     let right = &mut performer.rig.hands[1];
     (right.pad_touch, right.pad) = (true, Vec2::new(0.5, -0.25));
     performer.rig.send()?;
-    app.until("a swipe arrives", 10.0, |now| {
+    app.until("a swipe arrives", |now| {
         let at = |i: usize| now["hands"][1]["swipe"][i].as_f64().unwrap_or(9.0);
         (at(0) - 0.5).abs() < 0.02 && (at(1) + 0.25).abs() < 0.02
     })?;
@@ -102,18 +102,14 @@ pub fn touch(folder: &Path) -> Result<()> {
     // The stick is the swipe too.
     performer.rig.hands[0].stick = Vec2::new(0.4, 0.0);
     performer.rig.send()?;
-    app.until("a swipe arrives", 10.0, |now| {
+    app.until("a swipe arrives", |now| {
         (now["hands"][0]["swipe"][0].as_f64().unwrap_or(9.0) - 0.4).abs() < 0.02
     })?;
     performer.rig.hands[0].stick = Vec2::ZERO;
     performer.rig.hands[0].system = true;
     performer.rig.send()?;
-    if app
-        .until("the left menu saves", 3.0, |now| {
-            now["hands"][0]["down"] == json!(["Save"])
-        })
-        .is_err()
-    {
+    performer.frames(&mut app, 10)?;
+    if app.now["hands"][0]["down"] != json!(["Save"]) {
         println!("     this driver has no menu button: save is not shown under Touch");
     }
     quit(&mut app)
@@ -124,7 +120,7 @@ pub fn wmr(folder: &Path) -> Result<()> {
     let _runtime = Runtime::simulated("wmr")?;
     let mut app = App::start(folder, &["--vr"])?;
     focus(&mut app)?;
-    app.until("both controllers are motion controllers", 20.0, |now| {
+    app.until("both controllers are motion controllers", |now| {
         Side::BOTH.iter().all(|&s| {
             let hand = &now["hands"][s as usize];
             hand["profile"] == "microsoft/motion_controller" && hand["tracked"] == true
@@ -147,20 +143,19 @@ pub fn own(folder: &Path) -> Result<()> {
     }
     let mut app = App::start(folder, &["--vr"])?;
     focus(&mut app)?;
-    app.until("the mistake is said", 10.0, |now| {
+    app.until("the mistake is said", |now| {
         let said = now["warnings"].to_string();
         said.contains("headset.ron, line 4") && said.contains("x/click")
     })?;
+    // What is pressed together arrives together.
     arrives(
         &mut performer,
         &mut app,
         Side::Right,
-        |c| c.a = true,
-        Action::Finish,
+        |c| (c.a, c.trigger) = (true, 1.0),
+        Action::Act,
     )
-    .err()
-    .map_or_else(|| bail!("the usual button still finishes"), |_| Ok(()))?;
-    performer.rig.hands[1].a = false;
+    .context("the usual button finishes no more")?;
     performer.rig.send()?;
     arrives_among(
         &mut performer,
@@ -173,7 +168,7 @@ pub fn own(folder: &Path) -> Result<()> {
 }
 
 fn every(performer: &mut Performer, app: &mut App, profile: &str) -> Result<()> {
-    app.until(&format!("both controllers are {profile}"), 20.0, |now| {
+    app.until(&format!("both controllers are {profile}"), |now| {
         Side::BOTH
             .iter()
             .all(|&s| now["hands"][s as usize]["profile"] == profile)
@@ -196,12 +191,12 @@ fn arrives(
     let rest = performer.rig.hands[side as usize];
     press(&mut performer.rig.hands[side as usize]);
     performer.rig.send()?;
-    app.until(&format!("{side:?} {action:?}"), 5.0, |now| {
+    app.until(&format!("{side:?} {action:?}"), |now| {
         now["hands"][side as usize]["down"] == json!([format!("{action:?}")])
     })?;
     performer.rig.hands[side as usize] = rest;
     performer.rig.send()?;
-    app.until(&format!("{side:?} {action:?} is let go"), 5.0, |now| {
+    app.until(&format!("{side:?} {action:?} is let go"), |now| {
         now["hands"][side as usize]["down"] == json!([])
     })?;
     Ok(())
@@ -217,7 +212,7 @@ fn arrives_among(
 ) -> Result<()> {
     press(&mut performer.rig.hands[side as usize]);
     performer.rig.send()?;
-    app.until(&format!("{side:?} {action:?}"), 5.0, |now| {
+    app.until(&format!("{side:?} {action:?}"), |now| {
         now["hands"][side as usize]["down"]
             .to_string()
             .contains(&format!("\"{action:?}\""))

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 . scripts/setup.sh
 root=${MIDAIR_XR_ROOTFS:-${XDG_CACHE_HOME:-$HOME/.cache}/midair/xr-rootfs}
-limit=${MIDAIR_XR_SECONDS:-600}
+limit=${MIDAIR_XR_SECONDS:-2400}
 
 skip() {
   echo "skipped: $1"

@@ -22,6 +22,9 @@ struct Performance {
     /// By how much the volume may differ from that of the session played without a headset.
     #[serde(default = "two_percent")]
     volume: f64,
+    /// Whether it makes lines and strokes and nothing that has a volume.
+    #[serde(default)]
+    drawing: bool,
 }
 
 fn two_percent() -> f64 {
@@ -62,26 +65,24 @@ fn perform(what: &Performance, folder: &Path) -> Result<()> {
         open: false,
     })?;
     performer.session(&mut app, &session)?;
-    app.until("the work is done", 60.0, |now| now["busy"] == 0)?;
+    app.until("the work is done", |now| now["busy"] == 0)?;
     app.ask(&Command::SaveAs(saved.clone().into()))?;
-    app.until("the document is saved", 30.0, |now| {
+    app.until("the document is saved", |now| {
         now["busy"] == 0 && fs::metadata(&saved).is_ok()
     })?;
     // An end that is asked for would be in the recording as well.
-    app.kill()?;
+    app.kill(&record)?;
     if !runtime.is_alive() {
         bail!("the runtime died");
     }
-    for name in ["played.stl", "saved.stl", "session.stl"] {
-        let _ = fs::remove_file(file(name));
+    let session = format!("/job/{}", what.session);
+    if what.drawing {
+        return drawn(&record, &saved, &session, &file);
     }
     midair(&["export", &saved, "--to", &file("saved.stl")])?;
     midair(&["play", &record, "--export", &file("played.stl")])?;
-    if fs::read(file("saved.stl"))? != fs::read(file("played.stl"))? {
-        bail!("the recording, played without a headset, makes another mesh");
-    }
+    same(&file("saved.stl"), &file("played.stl"))?;
     midair(&["check", &file("played.stl"), &saved])?;
-    let session = format!("/job/{}", what.session);
     midair(&["play", &session, "--export", &file("session.stl")])?;
     let (is, should) = (volume(&file("played.stl"))?, volume(&file("session.stl"))?);
     let off = (is / should - 1.0).abs();
@@ -91,6 +92,36 @@ fn perform(what: &Performance, folder: &Path) -> Result<()> {
     );
     if off > what.volume {
         bail!("its volume is {is} m3, the session's {should} m3");
+    }
+    Ok(())
+}
+
+fn same(saved: &str, played: &str) -> Result<()> {
+    if fs::read(saved)? != fs::read(played)? {
+        bail!("the recording, played without a headset, exports something else");
+    }
+    Ok(())
+}
+
+/// What is drawn has no volume: its lines and strokes are as many as those of the session.
+fn drawn(record: &str, saved: &str, session: &str, file: &dyn Fn(&str) -> String) -> Result<()> {
+    midair(&["export", saved, "--to", &file("saved.obj")])?;
+    let (played, reported) = (file("played.obj"), file("played.json"));
+    midair(&["play", record, "--export", &played, "--report", &reported])?;
+    same(&file("saved.obj"), &played)?;
+    midair(&["check", saved])?;
+    midair(&["play", session, "--report", &file("session.json")])?;
+    let count = |report: &str| -> Result<[usize; 2]> {
+        let report: Value = serde_json::from_str(&fs::read_to_string(report)?)?;
+        Ok(["lines", "strokes"].map(|what| report[what].as_array().map_or(0, Vec::len)))
+    };
+    let (is, should) = (count(&reported)?, count(&file("session.json"))?);
+    println!(
+        "     the recording exports the same bytes; {} lines and {} strokes",
+        is[0], is[1]
+    );
+    if is != should || is[0] + is[1] == 0 {
+        bail!("there are {is:?} lines and strokes, in the session {should:?}");
     }
     Ok(())
 }

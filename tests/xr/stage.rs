@@ -16,15 +16,19 @@ pub const MIDAIR: &str = "/target/debug/midair";
 /// Where scenarios leave what they made.
 pub const OUT: &str = "/out";
 
-/// Polls until something holds.
-pub fn until(what: &str, seconds: f64, mut holds: impl FnMut() -> Result<bool>) -> Result<f64> {
+/// After so long something that is waited for is taken to be a fault. Nothing is told by it: a machine that has other
+/// work, or whose shaders are compiled first, may take long for a frame.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Polls until something holds; says how many seconds it took.
+pub fn until(what: &str, mut holds: impl FnMut() -> Result<bool>) -> Result<f64> {
     let begin = Instant::now();
     loop {
         if holds()? {
             return Ok(begin.elapsed().as_secs_f64());
         }
-        if begin.elapsed().as_secs_f64() > seconds {
-            bail!("{what}: not within {seconds} s");
+        if begin.elapsed() > PATIENCE {
+            bail!("{what}: not within {} s", PATIENCE.as_secs());
         }
         sleep(Duration::from_millis(5));
     }
@@ -66,9 +70,10 @@ pub fn display() -> Result<Guard> {
         .stderr(log("xvfb.log")?)
         .spawn()
         .context("Xvfb")?;
-    until("the display", 20.0, || {
-        Ok(Path::new("/tmp/.X11-unix/X7").exists())
-    })?;
+    until(
+        "the display",
+        || Ok(Path::new("/tmp/.X11-unix/X7").exists()),
+    )?;
     Ok(Guard(child))
 }
 
@@ -119,7 +124,7 @@ impl Runtime {
             .spawn()
             .context("monado-service")?;
         let mut process = Guard(child);
-        until("the runtime", 30.0, || {
+        until("the runtime", || {
             if let Some(status) = process.0.try_wait()? {
                 bail!("monado-service ended at once: {status}");
             }
@@ -220,13 +225,8 @@ impl App {
     }
 
     /// Waits until what it says fits.
-    pub fn until(
-        &mut self,
-        what: &str,
-        seconds: f64,
-        fits: impl Fn(&Value) -> bool,
-    ) -> Result<f64> {
-        until(what, seconds, || {
+    pub fn until(&mut self, what: &str, fits: impl Fn(&Value) -> bool) -> Result<f64> {
+        until(what, || {
             self.listen()?;
             if let Some(status) = self.process.0.try_wait()? {
                 bail!("{what}: the app has ended ({status})");
@@ -238,28 +238,41 @@ impl App {
 
     /// Asks for something as a panel would, and waits until it is asked.
     pub fn ask(&mut self, command: &Command) -> Result<()> {
+        self.say(&ron::to_string(command)?)
+    }
+
+    /// Gives it a line to read, and waits until it is read.
+    pub fn say(&mut self, line: &str) -> Result<()> {
         let mut file = OpenOptions::new()
             .create(true)
             .append(true)
             .open(self.folder.join("talk/asks.ron"))?;
-        writeln!(file, "{}", ron::to_string(command)?)?;
+        writeln!(file, "{line}")?;
         self.asked += 1;
         let asked = self.asked;
-        self.until("an ask arrives", 20.0, |now| now["asked"] == asked)?;
+        self.until("an ask arrives", |now| now["asked"] == asked)?;
         Ok(())
     }
 
-    /// Waits until it ends by itself.
-    pub fn end(&mut self, seconds: f64) -> Result<()> {
-        until("the app ends", seconds, || {
-            Ok(self.process.0.try_wait()?.is_some())
+    /// Waits until it ends by itself, or else until what it says fits; whether it has ended.
+    pub fn ends_or(&mut self, fits: impl Fn(&Value) -> bool) -> Result<bool> {
+        let mut ended = false;
+        until("the app ends", || {
+            self.listen()?;
+            ended = self.process.0.try_wait()?.is_some();
+            Ok(ended || fits(&self.now))
         })?;
-        Ok(())
+        Ok(ended)
     }
 
-    /// Ends it as a power cut would, once its recording is written.
-    pub fn kill(&mut self) -> Result<()> {
-        sleep(Duration::from_millis(2500));
+    /// Ends it as a power cut would, once what was done so far is in its recording.
+    pub fn kill(&mut self, recording: &str) -> Result<()> {
+        // A piece is written for each second: the second one that comes was begun after now.
+        for _ in 0..2 {
+            let length = || Ok::<_, anyhow::Error>(fs::metadata(recording)?.len());
+            let before = length()?;
+            until("the recording is written", || Ok(length()? > before))?;
+        }
         self.process.0.kill()?;
         self.process.0.wait()?;
         Ok(())

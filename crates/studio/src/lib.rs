@@ -4,6 +4,7 @@
 //! [`StudioSet::Gather`]; the active tool reads them and applies edits in [`StudioSet::Act`];
 //! the entities follow the document in [`StudioSet::Rebuild`].
 
+pub mod bound;
 mod bounded;
 pub mod carry;
 pub mod command;

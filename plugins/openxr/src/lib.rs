@@ -29,6 +29,7 @@ use bevy_mod_openxr::types::WgpuGraphics;
 use bevy_mod_xr::session::XrSessionPlugin;
 use midair_studio::StudioSet;
 
+pub use frame::eye;
 pub use runtime::RuntimeFault;
 pub use session::Life;
 

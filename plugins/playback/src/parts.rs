@@ -37,6 +37,12 @@ impl Parts {
         self.counts = counts;
     }
 
+    /// Forgets the frames so far.
+    pub fn restart(&mut self) {
+        self.main.clear();
+        self.ms.iter_mut().for_each(Vec::clear);
+    }
+
     /// The whole main schedule, and its parts by name.
     pub fn figures(&self) -> (FrameTimes, BTreeMap<String, FrameTimes>) {
         let each = NAMES.iter().zip(&self.ms);

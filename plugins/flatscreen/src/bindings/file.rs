@@ -1,62 +1,26 @@
 //! Bindings in a file: `undo: ["Ctrl+Z", "Pad X"]`.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Write};
+use std::fmt::Write;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use midair_studio::bound::{LineFault, Lines, line_of};
 
 use super::{Binding, Control};
 
-/// What is written for each control, not understood yet.
-struct Lines(Vec<(String, Vec<String>)>);
-
-impl<'de> Deserialize<'de> for Lines {
-    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
-        struct Reader;
-        impl<'de> Visitor<'de> for Reader {
-            type Value = Lines;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("lines like undo: [\"Ctrl+Z\"], between ( and )")
-            }
-            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Lines, M::Error> {
-                let mut lines = Vec::new();
-                while let Some(name) = map.next_key::<String>()? {
-                    lines.push((name, map.next_value()?));
-                }
-                Ok(Lines(lines))
-            }
-        }
-        d.deserialize_struct("", &[], Reader)
-    }
-}
-
-/// A place in a file that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {reason}")]
-pub struct FileFault {
-    /// Counted from 1.
-    pub line: usize,
-    /// What is wrong and how it would be right.
-    pub reason: String,
-}
-
 /// What a file says, as far as it can be understood, and what cannot.
-pub(super) fn read(text: &str) -> (BTreeMap<Control, Vec<Binding>>, Vec<FileFault>) {
+pub(super) fn read(text: &str) -> (BTreeMap<Control, Vec<Binding>>, Vec<LineFault>) {
     let mut bound = BTreeMap::new();
     let mut faults = Vec::new();
     let lines = match ron::from_str::<Lines>(text) {
         Ok(lines) => lines.0,
         Err(error) => {
-            faults.push(FileFault {
-                line: error.span.start.line,
-                reason: error.code.to_string(),
-            });
+            faults.push(error.into());
             return (bound, faults);
         }
     };
     for (name, texts) in lines {
-        let line = line_of(text, &name);
-        let mut fault = |reason: String| faults.push(FileFault { line, reason });
+        let line = line_of(text, &name, 1);
+        let mut fault = |reason: String| faults.push(LineFault { line, reason });
         let Some(control) = Control::named(&name) else {
             let near = nearest(&name);
             fault(format!(
@@ -95,16 +59,6 @@ pub(super) fn write(bound: &BTreeMap<Control, Vec<Binding>>) -> String {
     }
     text.push_str(")\n");
     text
-}
-
-/// The line on which a control is named, counted from 1.
-fn line_of(text: &str, name: &str) -> usize {
-    let named = |line: &str| {
-        let code = line.split("//").next().unwrap_or(line);
-        code.split(|c: char| !c.is_alphanumeric() && c != '_')
-            .any(|word| word == name)
-    };
-    text.lines().position(named).map_or(1, |i| i + 1)
 }
 
 /// The control whose name is most like `name`.

@@ -1,9 +1,10 @@
 //! `bindings.ron` beside the settings: read at the start, written off the frame when something was bound.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use bevy::tasks::IoTaskPool;
+use midair_studio::bound::own_file;
 use midair_studio::notice::Notices;
 use midair_studio::project::Places;
 use midair_studio::settings::replace_file;
@@ -22,34 +23,19 @@ pub(super) fn path(places: &Places) -> PathBuf {
 
 fn read(places: Res<Places>, mut bindings: ResMut<Bindings>, mut notices: ResMut<Notices>) {
     let path = path(&places);
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return,
-        Err(error) => {
-            notices.warn(format!(
-                "{} cannot be read: {error}. The usual keys are used.",
-                path.display()
-            ));
-            return;
-        }
-    };
-    let (read, faults) = Bindings::with_file(&text);
-    if let Some(first) = faults.first() {
+    let way_out = |path: &Path| {
         let aside = path.with_extension("ron.bad");
         // Kept beside, since the next key that is bound writes the file anew.
-        let _ = std::fs::copy(&path, &aside);
-        let more = match faults.len() {
-            1 => String::new(),
-            n => format!(" ({} more like it)", n - 1),
-        };
-        notices.warn(format!(
-            "{}, {first}{more}. The usual keys are used there; correct the line, or bind the keys anew in Controls. \
-             Your file is kept as {}.",
-            path.display(),
+        let _ = std::fs::copy(path, &aside);
+        format!(
+            "correct the line, or bind the keys anew in Controls. Your file is kept as {}.",
             aside.display()
-        ));
+        )
+    };
+    let read = own_file(&path, "keys", way_out, Bindings::with_file, &mut notices);
+    if let Some(read) = read {
+        *bindings = read;
     }
-    *bindings = read;
 }
 
 fn write(bindings: Res<Bindings>, places: Res<Places>, mut begun: Local<bool>) {

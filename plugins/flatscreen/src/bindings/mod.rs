@@ -14,7 +14,6 @@ use leafwing_input_manager::plugin::{CentralInputStorePlugin, InputManagerSystem
 
 pub use binding::{Binding, BindingFault, Stick};
 pub use control::{Context, Control, Group};
-pub use file::FileFault;
 pub use listen::{Attention, Controls};
 pub use part::{Device, Part};
 pub(crate) use rebind::{Asked, Rebind, Rebinding};

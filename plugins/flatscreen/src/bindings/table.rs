@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
+use midair_studio::bound::LineFault;
 
-use super::{Binding, Control, Device, FileFault, file};
+use super::{Binding, Control, Device, file};
 
 /// The usual bindings, as everybody finds them.
 const USUAL: &str = include_str!("../../../../assets/bindings/flatscreen.ron");
@@ -29,7 +30,7 @@ impl Default for Bindings {
 impl Bindings {
     /// The usual ones, with those that a person's file has changed; and what of that file cannot
     /// be used.
-    pub fn with_file(text: &str) -> (Self, Vec<FileFault>) {
+    pub fn with_file(text: &str) -> (Self, Vec<LineFault>) {
         let (own, faults) = file::read(text);
         let bindings = Self {
             own,

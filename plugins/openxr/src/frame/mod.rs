@@ -19,6 +19,7 @@ use bevy_mod_xr::spaces::XrPrimaryReferenceSpace;
 
 pub(crate) use render::{RenderParts, ToRender};
 pub(crate) use trouble::Trouble;
+pub use views::eye;
 pub(crate) use views::{close_views, open_views};
 
 /// Between two tries of a call that was refused and that sets the pace.

@@ -11,19 +11,24 @@ use midair_studio::show::headset;
 /// Metres of the room: nearer than a hand is held to the face.
 const NEAR: f32 = 0.03;
 
+/// What is drawn into for one eye, the left one being 0, while the headset is worn.
+pub fn eye(number: u32) -> ManualTextureViewHandle {
+    ManualTextureViewHandle(XR_TEXTURE_INDEX + number)
+}
+
 /// Makes the cameras of a session that has begun to be.
 pub(crate) fn open_views(world: &mut World) {
     let config = *world.resource::<OxrCurrentSessionConfig>();
     let images = *world.resource::<OxrSwapchainImages>();
     let Some(first) = images.first() else { return };
-    for eye in 0..2 {
+    for number in 0..2 {
         let mut views = world.resource_mut::<ManualTextureViews>();
-        let view = add_texture_view(&mut views, first, &config, eye);
+        let view = add_texture_view(&mut views, first, &config, number);
         world.spawn((
-            Name::new(if eye == 0 { "left eye" } else { "right eye" }),
+            Name::new(if number == 0 { "left eye" } else { "right eye" }),
             headset(),
             RenderTarget::TextureView(view),
-            XrCamera(eye),
+            XrCamera(number),
             Projection::custom(XrProjection {
                 near: NEAR,
                 ..default()
@@ -36,11 +41,11 @@ pub(crate) fn open_views(world: &mut World) {
 pub(crate) fn close_views(world: &mut World) {
     let mut eyes = world.query_filtered::<(Entity, &XrCamera), ()>();
     let found: Vec<_> = eyes.iter(world).map(|(e, c)| (e, c.0)).collect();
-    for (entity, eye) in found {
+    for (entity, number) in found {
         world.despawn(entity);
         world
             .resource_mut::<ManualTextureViews>()
-            .remove(&ManualTextureViewHandle(XR_TEXTURE_INDEX + eye));
+            .remove(&eye(number));
     }
     world.resource_mut::<OxrViews>().clear();
 }

@@ -119,7 +119,7 @@ fn set(
         .create_action_set(name, title, 0)
         .map_err(refused("xrCreateActionSet"))?;
     let mut senses = Vec::new();
-    for control in Control::ALL {
+    for control in Control::ALL.iter().copied() {
         let name = format!("{}{suffix}", control.name());
         let title = control.title();
         let sense = match control.kind() {

@@ -93,6 +93,11 @@ impl Wand {
     pub fn is_busy(&self) -> bool {
         self.met.is_some() || self.captured != ActionSet::NONE
     }
+
+    /// What was pressed on a board and is still down: neither tools nor recordings see it.
+    pub fn captured(&self) -> ActionSet {
+        self.captured
+    }
 }
 
 /// Both wands.

@@ -1,60 +1,23 @@
 //! Tables in a file: `{ "valve/index_controller": (undo: ["off a/click"]) }`.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use midair_studio::bound::{LineFault, Lines, line_of};
+use midair_studio::hands::Side;
 
 use super::{Control, Kind, PROFILES, Part, Place, Profile};
-use midair_studio::hands::Side;
 
 /// What one file says of each profile.
 pub(super) type Tables = BTreeMap<&'static str, BTreeMap<Control, Vec<Place>>>;
 
-/// What is written for each control of a profile, not understood yet.
-struct Lines(Vec<(String, Vec<String>)>);
-
-impl<'de> Deserialize<'de> for Lines {
-    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
-        struct Reader;
-        impl<'de> Visitor<'de> for Reader {
-            type Value = Lines;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("lines like undo: [\"off a/click\"], between ( and )")
-            }
-            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Lines, M::Error> {
-                let mut lines = Vec::new();
-                while let Some(name) = map.next_key::<String>()? {
-                    lines.push((name, map.next_value()?));
-                }
-                Ok(Lines(lines))
-            }
-        }
-        d.deserialize_struct("", &[], Reader)
-    }
-}
-
-/// A place in a file that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {reason}")]
-pub struct BindingFault {
-    /// Counted from 1.
-    pub line: usize,
-    /// What is wrong and how it would be right.
-    pub reason: String,
-}
-
 /// What a file says, as far as it can be understood, and what cannot.
-pub(super) fn read(text: &str) -> (Tables, Vec<BindingFault>) {
+pub(super) fn read(text: &str) -> (Tables, Vec<LineFault>) {
     let mut tables = Tables::new();
     let mut faults = Vec::new();
     let profiles = match ron::from_str::<BTreeMap<String, Lines>>(text) {
         Ok(profiles) => profiles,
         Err(error) => {
-            faults.push(BindingFault {
-                line: error.span.start.line,
-                reason: error.code.to_string(),
-            });
+            faults.push(error.into());
             return (tables, faults);
         }
     };
@@ -62,7 +25,7 @@ pub(super) fn read(text: &str) -> (Tables, Vec<BindingFault>) {
         let begins = line_of(text, &id, 1);
         let Some(profile) = Profile::named(&id) else {
             let known: Vec<_> = PROFILES.iter().map(|p| p.id).collect();
-            faults.push(BindingFault {
+            faults.push(LineFault {
                 line: begins,
                 reason: format!(
                     "there is no controller \"{id}\"; those are {}",
@@ -77,7 +40,7 @@ pub(super) fn read(text: &str) -> (Tables, Vec<BindingFault>) {
                 Ok((control, places)) => {
                     table.insert(control, places);
                 }
-                Err(reason) => faults.push(BindingFault {
+                Err(reason) => faults.push(LineFault {
                     line: line_of(text, &name, begins),
                     reason,
                 }),
@@ -94,7 +57,7 @@ fn understood(
     texts: &[String],
 ) -> Result<(Control, Vec<Place>), String> {
     let Some(control) = Control::named(name) else {
-        let all: Vec<_> = Control::ALL.into_iter().map(Control::name).collect();
+        let all: Vec<_> = Control::ALL.iter().map(|c| c.name()).collect();
         return Err(format!(
             "there is nothing called \"{name}\"; it can be {}",
             all.join(", ")
@@ -141,17 +104,6 @@ fn understood(
         places.push(place);
     }
     Ok((control, places))
-}
-
-/// The line on which a name stands, from `from` on, counted from 1.
-fn line_of(text: &str, name: &str, from: usize) -> usize {
-    let named = |line: &str| {
-        let code = line.split("//").next().unwrap_or(line);
-        code.split(|c: char| !c.is_alphanumeric() && !matches!(c, '_' | '/'))
-            .any(|word| word == name)
-    };
-    let found = text.lines().skip(from - 1).position(named);
-    found.map_or(from, |i| from + i)
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ mod table;
 pub(crate) use table::{profiles, read as read_own};
 
 pub use control::{Control, Kind};
-pub use file::BindingFault;
 pub use place::{Arm, Part, Place, Source, Who};
 pub use profile::{PROFILES, Profile};
 pub use table::{Arms, Bindings};

@@ -1,14 +1,15 @@
 //! The tables as they are used: the usual ones, and what a person has changed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
+use midair_studio::bound::{LineFault, own_file};
 use midair_studio::hands::{Action, Side};
 use midair_studio::notice::Notices;
 use midair_studio::project::Places;
 
 use super::file::{self, Tables};
-use super::{Arm, BindingFault, Control, Kind, PROFILES, Part, Place, Profile, Source};
+use super::{Arm, Control, Kind, PROFILES, Part, Place, Profile, Source};
 
 /// The usual tables, as everybody finds them.
 const USUAL: &str = include_str!("../../../../../assets/bindings/headset.ron");
@@ -45,7 +46,7 @@ impl Arms {
 
 impl Bindings {
     /// The usual ones, with those that a person's file has changed; and what of that file cannot be used.
-    pub fn with_file(text: &str) -> (Self, Vec<BindingFault>) {
+    pub fn with_file(text: &str) -> (Self, Vec<LineFault>) {
         let (own, faults) = file::read(text);
         let bindings = Self {
             own,
@@ -84,7 +85,7 @@ impl Bindings {
     /// What the arms stand for on one hand when `main` leads. A line about one arm is before a line about all.
     pub fn arms(&self, profile: &Profile, side: Side, main: Side) -> Arms {
         let mut arms = Vec::new();
-        for control in Control::ALL {
+        for control in Control::ALL.iter().copied() {
             let Some(action) = control.action().filter(|_| control.kind() == Kind::Button) else {
                 continue;
             };
@@ -142,26 +143,10 @@ pub(crate) fn read(
     let Some(path) = places.map(|p| path(&p)) else {
         return;
     };
-    match std::fs::read_to_string(&path) {
-        Ok(text) => {
-            let (read, faults) = Bindings::with_file(&text);
-            if let Some(first) = faults.first() {
-                let more = match faults.len() {
-                    1 => String::new(),
-                    n => format!(" ({} more like it)", n - 1),
-                };
-                notices.warn(format!(
-                    "{}, {first}{more}. The usual buttons are used there; correct the line and start Midair again.",
-                    path.display()
-                ));
-            }
-            *bindings = read;
-        }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
-        Err(error) => notices.warn(format!(
-            "{} cannot be read: {error}. The usual buttons are used.",
-            path.display()
-        )),
+    let way_out = |_: &Path| "correct the line and start Midair again.".to_owned();
+    let read = own_file(&path, "buttons", way_out, Bindings::with_file, &mut notices);
+    if let Some(read) = read {
+        *bindings = read;
     }
 }
 
@@ -209,7 +194,7 @@ mod tests {
             for main in Side::BOTH {
                 let mut had: Vec<Action> = Vec::new();
                 for side in Side::BOTH {
-                    for control in Control::ALL {
+                    for control in Control::ALL.iter().copied() {
                         if !bindings.components(profile, control, side, main).is_empty() {
                             had.extend(control.action());
                         }
