@@ -8,6 +8,7 @@ use midair_document::{may_save, save};
 use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
 use midair_solid::{ExportOptions, export, may_export};
 use midair_studio::evaluate::Evaluations;
+use midair_studio::materials::MaterialShelf;
 use midair_studio::project::{Begin, Places, Project};
 
 use super::{Play, open};
@@ -80,6 +81,7 @@ pub(super) fn run(args: Play) -> Result<()> {
         let options = ExportOptions {
             step: args.step,
             up: args.up,
+            materials: world.resource::<MaterialShelf>().all().clone(),
             ..ExportOptions::default()
         };
         export(

@@ -12,6 +12,7 @@ mod holding;
 mod keyboard;
 mod leaving;
 mod looks;
+mod materials;
 mod mouse;
 mod mouse_session;
 mod newcomer;

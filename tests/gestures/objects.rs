@@ -121,6 +121,7 @@ fn every_ask_is_one_step() {
         Ask::Material {
             ids: vec![],
             material: Some("metal".into()),
+            dials: [("polish".to_owned(), 0.5)].into(),
         },
         Ask::Locked {
             ids: vec![c],

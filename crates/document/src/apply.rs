@@ -5,7 +5,7 @@ use midair_field::{Canvas, Node, Op, Recipe, Stroke};
 
 use crate::drawing::DrawingFault;
 use crate::recipes::{RecipeFault, check_recipe, check_sheet, is_box};
-use crate::{Document, Edit, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use crate::{Dials, Document, Edit, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
 
 /// Why an edit was refused. The document is as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,6 +42,9 @@ pub enum EditError {
     /// A picture with impossible numbers.
     #[error("a picture is 0.001 to 100 metres wide and high, and its opacity 0 to 1")]
     Reference,
+    /// A material's number that is none.
+    #[error("{0} of a material is not a number")]
+    Dial(String),
     /// An object that is no painting.
     #[error("{0} is not a painting")]
     NoPainting(ObjectId),
@@ -170,10 +173,19 @@ impl Document {
                 id: *id,
                 colour: std::mem::replace(&mut self.change(*id)?.colour, *colour),
             },
-            Edit::SetMaterial { id, material } => Edit::SetMaterial {
-                id: *id,
-                material: std::mem::replace(&mut self.change(*id)?.material, material.clone()),
-            },
+            Edit::SetMaterial {
+                id,
+                material,
+                dials,
+            } => {
+                sound(dials)?;
+                let object = self.change(*id)?;
+                Edit::SetMaterial {
+                    id: *id,
+                    material: std::mem::replace(&mut object.material, material.clone()),
+                    dials: std::mem::replace(&mut object.dials, dials.clone()),
+                }
+            }
             Edit::SetLayer { id, layer } => {
                 self.layer(*layer).ok_or(EditError::NoLayer(*layer))?;
                 let layer = std::mem::replace(&mut self.change(*id)?.layer, *layer);
@@ -357,6 +369,7 @@ impl Document {
         self.layer(object.layer)
             .ok_or(EditError::NoLayer(object.layer))?;
         self.has_group(object.group)?;
+        sound(&object.dials)?;
         kind_fits(&object.kind)
     }
 
@@ -433,6 +446,13 @@ impl Document {
         }
         let group = Arc::make_mut(&mut self.groups).remove(&id);
         group.ok_or(EditError::NoGroup(id))
+    }
+}
+
+fn sound(dials: &Dials) -> Result<(), EditError> {
+    match dials.iter().find(|(_, value)| !value.is_finite()) {
+        Some((name, _)) => Err(EditError::Dial(name.clone())),
+        None => Ok(()),
     }
 }
 

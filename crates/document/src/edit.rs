@@ -6,7 +6,7 @@ use midair_field::{Node, Op, Placement, Recipe, Skeleton, Stroke};
 use serde::{Deserialize, Serialize};
 
 use crate::recipes::walk;
-use crate::{Colour, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use crate::{Colour, Dials, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
 
 /// A change to the document: small, serialisable, and undone by another edit.
 ///
@@ -118,6 +118,9 @@ pub enum Edit<R = Recipe> {
         id: ObjectId,
         /// Its material's id.
         material: Option<String>,
+        /// What is set of it.
+        #[serde(default, skip_serializing_if = "Dials::is_empty")]
+        dials: Dials,
     },
     /// Puts an object on a layer.
     SetLayer {
@@ -274,7 +277,15 @@ impl<R: Clone> Edit<R> {
             SetFresh { id, fresh } => SetFresh { id, fresh },
             SetDimmed { id, dimmed } => SetDimmed { id, dimmed },
             SetColour { id, colour } => SetColour { id, colour },
-            SetMaterial { id, material } => SetMaterial { id, material },
+            SetMaterial {
+                id,
+                material,
+                dials,
+            } => SetMaterial {
+                id,
+                material,
+                dials,
+            },
             SetLayer { id, layer } => SetLayer { id, layer },
             SetGroup { id, group } => SetGroup { id, group },
             AddLayer { id, layer } => AddLayer { id, layer },
@@ -374,6 +385,7 @@ impl Edit {
                     size_of::<Object>()
                         + object.name.len()
                         + object.material.as_ref().map_or(0, String::len)
+                        + dial_bytes(&object.dials)
                         + kind_bytes(&object.kind, seen)
                 }
                 Self::SetKind { kind, .. } => kind_bytes(kind, seen),
@@ -388,7 +400,9 @@ impl Edit {
                     strokes.iter().map(one).sum()
                 }
                 Self::Rename { name, .. } => name.len(),
-                Self::SetMaterial { material, .. } => material.as_ref().map_or(0, String::len),
+                Self::SetMaterial {
+                    material, dials, ..
+                } => material.as_ref().map_or(0, String::len) + dial_bytes(dials),
                 Self::SetPending { pending } => size_of_val(&pending[..]),
                 Self::AddLayer { layer, .. }
                 | Self::RestoreLayer { layer, .. }
@@ -425,6 +439,11 @@ impl Edit {
             _ => {}
         }
     }
+}
+
+/// A name and a number each, and their share of the tree.
+fn dial_bytes(dials: &Dials) -> usize {
+    dials.keys().map(|name| 48 + name.len()).sum()
 }
 
 fn kind_bytes(kind: &Kind, seen: &mut HashSet<midair_field::RecipeHash>) -> usize {

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use midair_field::{Node, Placement, Recipe, Sweep};
@@ -44,7 +45,13 @@ pub struct Object<R = Recipe> {
     /// A material by its id; the set of materials is open.
     #[serde(default)]
     pub material: Option<String>,
+    /// What is set of the material, by the names it has for it; what is missing here is as usual.
+    #[serde(default, skip_serializing_if = "Dials::is_empty")]
+    pub dials: Dials,
 }
+
+/// What a person sets of a material: numbers by name.
+pub type Dials = BTreeMap<String, f32>;
 
 fn base_layer() -> LayerId {
     LayerId::BASE
@@ -69,6 +76,7 @@ impl<R> Object<R> {
             dimmed: false,
             colour: None,
             material: None,
+            dials: Dials::new(),
         }
     }
 
@@ -91,6 +99,7 @@ impl<R> Object<R> {
             dimmed: self.dimmed,
             colour: self.colour,
             material: self.material.clone(),
+            dials: self.dials.clone(),
         })
     }
 }

@@ -85,6 +85,11 @@ impl Folders {
         self.config.clone()
     }
 
+    /// Materials that the user has written in WGSL.
+    pub fn materials(&self) -> PathBuf {
+        self.data.join("materials")
+    }
+
     /// Pictures of components; may be deleted at any time.
     pub fn thumbnails(&self) -> PathBuf {
         self.cache.join("thumbnails")

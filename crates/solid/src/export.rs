@@ -7,7 +7,7 @@ use midair_mesh::{
     Curve, Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write_drawing,
 };
 
-use crate::{SolidError, finish, surface_of, tube};
+use crate::{Materials, SolidError, finish, surface_of, tube};
 
 /// Flat sides around a stroke that is written as a tube.
 const SIDES: usize = 12;
@@ -23,6 +23,8 @@ pub struct ExportOptions {
     pub up: Option<Up>,
     /// Only this object; all visible ones where `None`.
     pub only: Option<ObjectId>,
+    /// What objects are made of.
+    pub materials: Materials,
 }
 
 /// Why a mesh file was not written.
@@ -108,14 +110,15 @@ pub fn export(
             continue;
         }
         if let Some(curve) = curve_of(object, format) {
-            curves.push(Named::new(object.name.clone(), curve).finished(Some(finish(object))));
+            let looks = finish(object, &options.materials);
+            curves.push(Named::new(object.name.clone(), curve).finished(Some(looks)));
         } else {
             let Some(mesh) = object_mesh(file, object, store, volumes, step, cancel)? else {
                 continue;
             };
-            meshes.push(
-                Named::new(object.name.clone(), mesh.standing(up)).finished(Some(finish(object))),
-            );
+            let looks = finish(object, &options.materials);
+            let mesh = mesh.standing(up);
+            meshes.push(Named::new(object.name.clone(), mesh).finished(Some(looks)));
         }
     }
     meshes.retain(|m| !m.value.triangles.is_empty());

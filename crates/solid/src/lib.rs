@@ -34,7 +34,7 @@ mod thumbnail;
 mod tube;
 
 pub use export::{ExportError, ExportOptions, export, may_export};
-pub use material::{INK, MATERIALS, MaterialInfo, PLAIN, finish};
+pub use material::{Dial, HeadFault, INK, MOST_DIALS, MaterialInfo, Materials, PLAIN, finish};
 pub use plate::{PlateFault, plate};
 pub use swept::{Clones, clones, own_mesh, surface_of};
 pub use thumbnail::Thumbnail;

@@ -13,6 +13,7 @@ pub mod evaluate;
 pub mod hands;
 pub mod help;
 pub mod hold;
+pub mod materials;
 pub mod notice;
 pub mod objects;
 pub mod operands;
@@ -87,6 +88,7 @@ impl Plugin for StudioPlugin {
             drawing::plugin,
             evaluate::plugin,
             pick::plugin,
+            materials::plugin,
             show::plugin,
             help::plugin,
         ))

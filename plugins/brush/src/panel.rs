@@ -6,9 +6,11 @@ use bevy::prelude::World;
 use midair_field::{Canvas, HARD, Recipe, RecipeHash, Skeleton, Stroke};
 use midair_studio::{
     command::Command,
+    document::{Object, ObjectId},
     evaluate::Evaluations,
+    materials::MaterialShelf,
     panel::{
-        Panel, egui,
+        MaterialRows, Panel, choose, egui,
         egui::{
             ColorImage, RichText, ScrollArea, Sense, Slider, TextureHandle, TextureOptions, Ui,
             Vec2, vec2,
@@ -42,6 +44,7 @@ pub(crate) struct BrushPanel {
     query: String,
     /// A weight while its slider is dragged.
     weight: Option<(usize, f32)>,
+    material: MaterialRows,
 }
 
 impl Panel for BrushPanel {
@@ -68,7 +71,10 @@ impl Panel for BrushPanel {
                     painting.map(|(id, o, _)| (id, o.name.as_str())),
                     asks,
                 );
+                ui.separator();
+                self.material(ui, world, &brush, painting.map(|(id, o, _)| (id, o)), asks);
                 if let Some((_, _, canvas)) = painting {
+                    ui.separator();
                     self.strokes(ui, easel, canvas, asks);
                 }
             });
@@ -302,6 +308,31 @@ impl BrushPanel {
             .ctx()
             .load_texture(format!("brush {name}"), image, TextureOptions::LINEAR);
         Some(self.textures.entry(recipe.hash()).or_insert(texture).id())
+    }
+
+    /// What the painting is made of; of the next one where there is none.
+    fn material(
+        &mut self,
+        ui: &mut Ui,
+        world: &World,
+        brush: &BrushSettings,
+        painting: Option<(ObjectId, &Object)>,
+        asks: &mut Vec<Command>,
+    ) {
+        let shelf = world.resource::<MaterialShelf>();
+        match painting {
+            Some((id, object)) => {
+                let mut ask = Vec::new();
+                self.material.show(ui, shelf, object, &[id], &mut ask);
+                asks.extend(ask.into_iter().map(Command::Objects));
+            }
+            None => {
+                let now = Some(brush.material.as_str());
+                if let Some(info) = choose(ui, shelf, now) {
+                    asks.push(Settings::command("brush.material", info.id.clone()));
+                }
+            }
+        }
     }
 
     fn strokes(&mut self, ui: &mut Ui, easel: &Easel, canvas: &Canvas, asks: &mut Vec<Command>) {

@@ -77,6 +77,7 @@ impl Studio<'_> {
             work,
             more,
             name,
+            &self.settings.brush.material,
             &mut self.project,
             &mut self.easel,
             &mut self.selection,
@@ -245,6 +246,7 @@ fn commit(
     work: Work,
     more: Vec<Edit>,
     name: &str,
+    material: &str,
     project: &mut Project,
     easel: &mut Easel,
     selection: &mut Selection,
@@ -279,7 +281,8 @@ fn commit(
                 .filter(|(_, o)| o.name.starts_with("Painting"))
                 .count();
             let title = format!("Painting {}", count + 1);
-            let object = Object::solid(title, work.recipe()).placed(work.placement);
+            let mut object = Object::solid(title, work.recipe()).placed(work.placement);
+            object.material = (!material.is_empty()).then(|| material.to_owned());
             let add = Edit::Add {
                 id,
                 object: Arc::new(object),

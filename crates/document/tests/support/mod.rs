@@ -146,6 +146,9 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
         12 => Edit::SetMaterial {
             id,
             material: (b % 3 > 0).then(|| format!("glass-{b}")),
+            dials: (0..b % 4)
+                .map(|i| (format!("dial {i}"), b as f32))
+                .collect(),
         },
         13 => Edit::AddLayer {
             id: LayerId(next),

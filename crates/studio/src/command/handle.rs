@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 use midair_document::{Edit, Object};
 use midair_field::Placement;
+use midair_solid::ExportOptions;
 
 use super::{
     Command, Dialogs,
@@ -12,6 +13,7 @@ use super::{
 };
 use crate::StudioSet;
 use crate::hands::{Action, Hands, Side};
+use crate::materials::MaterialShelf;
 use crate::notice::Notices;
 use crate::panel::Panels;
 use crate::project::{Places, Project, Selection, Shelf};
@@ -54,7 +56,7 @@ fn handle(
     mut selection: ResMut<Selection>,
     mut errands: ResMut<Errands>,
     (mut settings, mut panels, mut dialogs): (ResMut<Settings>, ResMut<Panels>, ResMut<Dialogs>),
-    places: Res<Places>,
+    (places, materials): (Res<Places>, Res<MaterialShelf>),
     mut notices: ResMut<Notices>,
 ) {
     for command in commands.read() {
@@ -135,20 +137,24 @@ fn handle(
             } => errands.start(
                 Errand::Export {
                     path: path.clone(),
-                    step: *step,
-                    unit: *unit,
-                    up: *up,
-                    only: *only,
+                    options: ExportOptions {
+                        step: *step,
+                        unit: *unit,
+                        up: *up,
+                        only: *only,
+                        materials: materials.all().clone(),
+                    },
                 },
                 &project,
             ),
             Command::ExportObject { object, path } => errands.start(
                 Errand::Export {
                     path: path.clone(),
-                    step: None,
-                    unit: None,
-                    up: None,
-                    only: Some(*object),
+                    options: ExportOptions {
+                        only: Some(*object),
+                        materials: materials.all().clone(),
+                        ..default()
+                    },
                 },
                 &project,
             ),

@@ -80,6 +80,10 @@ fn about(ui: &mut Ui, world: &World) {
             "Your library",
             places.library.components().display().to_string(),
         ),
+        (
+            "Your materials",
+            places.library.materials().display().to_string(),
+        ),
         ("Autosaves", places.autosaves.display().to_string()),
         ("Saved work", places.work.display().to_string()),
     ]

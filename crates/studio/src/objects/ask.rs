@@ -1,5 +1,5 @@
 use bevy::math::Vec3;
-use midair_document::{Colour, GroupId, Layer, LayerId, ObjectId};
+use midair_document::{Colour, Dials, GroupId, Layer, LayerId, ObjectId};
 use midair_field::Placement;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,10 @@ pub enum How {
     Toggle,
     /// No longer.
     Remove,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// An axis of the world.
@@ -152,6 +156,22 @@ pub enum Ask {
         ids: Vec<ObjectId>,
         /// Its id.
         material: Option<String>,
+        /// What is set of it; the rest is as usual.
+        #[serde(default)]
+        dials: Dials,
+    },
+    /// Sets a number of the material that things have.
+    Dial {
+        /// Which.
+        #[serde(default)]
+        ids: Vec<ObjectId>,
+        /// Its name in the material's file.
+        dial: String,
+        /// What it is to be, within the material's bounds.
+        value: f32,
+        /// Whether this is what stays: otherwise it is only shown.
+        #[serde(default = "yes")]
+        done: bool,
     },
     /// Gives a colour and a material together.
     Look {

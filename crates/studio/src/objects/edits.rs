@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use bevy::math::Vec3;
-use midair_document::{Colour, Document, Edit, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use midair_document::{
+    Colour, Dials, Document, Edit, GroupId, Kind, Layer, LayerId, Object, ObjectId,
+};
 use midair_field::Placement;
+use midair_solid::Materials;
 
 use super::extent::{corners, extent};
 use super::{Ask, mirrored, turned};
@@ -28,6 +31,8 @@ pub(super) enum Refused {
     NoLook,
     #[error("That is no picture: only reference images have a width and an opacity of their own.")]
     NoPicture,
+    #[error("What it is made of has no such number to set.")]
+    NoDial,
     #[error("Copies around the vertical are 2 to 64, the first included.")]
     Count,
 }
@@ -37,6 +42,7 @@ type Step = (String, Vec<Edit>);
 pub(super) fn edits(
     ask: &Ask,
     document: &Document,
+    materials: &Materials,
     selection: &[ObjectId],
 ) -> Result<Step, Refused> {
     let named = |ids: &[ObjectId]| -> Result<Vec<ObjectId>, Refused> {
@@ -82,7 +88,8 @@ pub(super) fn edits(
                 return Err(Refused::NoLook);
             }
             let others = ids.iter().filter(|id| *id != of);
-            let edits = others.flat_map(|&id| look(id, source.colour, &source.material));
+            let edits =
+                others.flat_map(|&id| look(id, source.colour, &source.material, &source.dials));
             (format!("Look of {}", source.name), edits.collect())
         }
         Ask::Look {
@@ -91,7 +98,9 @@ pub(super) fn edits(
             material,
         } => {
             let ids = named(ids)?;
-            let edits = ids.iter().flat_map(|&id| look(id, *colour, material));
+            let edits = ids
+                .iter()
+                .flat_map(|&id| look(id, *colour, material, &Dials::new()));
             (count("Look of", &ids), edits.collect())
         }
         Ask::Picture { id, width, opacity } => {
@@ -348,13 +357,40 @@ pub(super) fn edits(
                 }),
             )
         }
-        Ask::Material { ids, material } => {
+        Ask::Material {
+            ids,
+            material,
+            dials,
+        } => {
             let ids = named(ids)?;
             let set = |id| Edit::SetMaterial {
                 id,
                 material: material.clone(),
+                dials: dials.clone(),
             };
             (count("Material of", &ids), each(&ids, set))
+        }
+        Ask::Dial {
+            ids, dial, value, ..
+        } => {
+            let ids = named(ids)?;
+            let set = |&id: &ObjectId| {
+                let object = document.object(id)?;
+                let info = materials.at(materials.place(object));
+                let known = info.dials.iter().find(|d| d.id == *dial)?;
+                let mut dials = object.dials.clone();
+                dials.insert(dial.clone(), known.bound(*value));
+                Some(Edit::SetMaterial {
+                    id,
+                    material: object.material.clone(),
+                    dials,
+                })
+            };
+            let edits: Vec<_> = ids.iter().filter_map(set).collect();
+            if edits.is_empty() {
+                return Err(Refused::NoDial);
+            }
+            (count("Material of", &ids), edits)
         }
     })
 }
@@ -363,11 +399,19 @@ fn each(ids: &[ObjectId], edit: impl Fn(ObjectId) -> Edit) -> Vec<Edit> {
     ids.iter().map(|&id| edit(id)).collect()
 }
 
-fn look(id: ObjectId, colour: Option<Colour>, material: &Option<String>) -> [Edit; 2] {
-    let material = material.clone();
+fn look(
+    id: ObjectId,
+    colour: Option<Colour>,
+    material: &Option<String>,
+    dials: &Dials,
+) -> [Edit; 2] {
     [
         Edit::SetColour { id, colour },
-        Edit::SetMaterial { id, material },
+        Edit::SetMaterial {
+            id,
+            material: material.clone(),
+            dials: dials.clone(),
+        },
     ]
 }
 

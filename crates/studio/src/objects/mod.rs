@@ -24,6 +24,7 @@ pub use select::picked;
 
 use crate::StudioSet;
 use crate::command::Command;
+use crate::materials::{DialDraft, MaterialShelf};
 use crate::notice::Notices;
 use crate::project::{Project, Selection};
 use crate::show::Drafts;
@@ -39,6 +40,8 @@ fn carry_out(
     mut selection: ResMut<Selection>,
     mut drafts: ResMut<Drafts>,
     mut dropper: ResMut<Dropper>,
+    materials: Res<MaterialShelf>,
+    mut draft: ResMut<DialDraft>,
     mut notices: ResMut<Notices>,
 ) {
     for command in commands.read() {
@@ -56,11 +59,26 @@ fn carry_out(
             }
             continue;
         }
+        if let Ask::Dial {
+            ids,
+            dial,
+            value,
+            done: false,
+        } = ask
+        {
+            let ids = if ids.is_empty() { &selection.0 } else { ids };
+            draft.set_if_neq(DialDraft {
+                ids: ids.clone(),
+                dial: Some((dial.clone(), *value)),
+            });
+            continue;
+        }
+        draft.set_if_neq(DialDraft::default());
         if let Some(next) = select::selected(ask, project.document(), &selection) {
             selection.set_if_neq(next);
             continue;
         }
-        match edits::edits(ask, project.document(), &selection.0) {
+        match edits::edits(ask, project.document(), materials.all(), &selection.0) {
             Ok((name, edits)) => {
                 drafts.clear();
                 let made: Vec<_> = edits.iter().filter_map(added).collect();

@@ -8,12 +8,12 @@ use midair_field::Placement;
 use midair_mesh::Unit;
 
 use super::palettes::Palettes;
-use super::{Panel, icon, kit};
+use super::{MaterialRows, Panel, icon, kit};
 use crate::command::Command;
+use crate::materials::MaterialShelf;
 use crate::objects::{Ask, Axis, extent};
 use crate::project::{Project, Selection};
 use crate::settings::Settings;
-use crate::show::MATERIALS;
 use crate::units;
 
 /// What is being dragged or typed; sent once when it is let go.
@@ -26,6 +26,7 @@ pub(super) struct Properties {
     fault: Option<String>,
     around: Option<u32>,
     palettes: Palettes,
+    material: MaterialRows,
     /// The picture whose numbers are in hand: its width in metres, its opacity.
     picture: Option<(ObjectId, f32, f32)>,
 }
@@ -108,7 +109,8 @@ impl Panel for Properties {
                         self.look(ui, document, selection, first, &mut ask);
                         let kept = &world.resource::<Settings>().palettes;
                         self.palettes.show(ui, kept, first, asks);
-                        material(ui, first, &mut ask);
+                        let shelf = world.resource::<MaterialShelf>();
+                        self.material.show(ui, shelf, first, selection, &mut ask);
                     }
                 }
                 ui.separator();
@@ -381,33 +383,6 @@ impl Properties {
             }
         });
     }
-}
-
-/// What it is made of.
-fn material(ui: &mut Ui, first: &Object, ask: &mut Vec<Ask>) {
-    ui.horizontal(|ui| {
-        ui.label("Material");
-        let now = first.material.as_deref().unwrap_or(MATERIALS[0].id);
-        let shown = MATERIALS
-            .iter()
-            .find(|m| m.id == now)
-            .map_or(now, |m| m.name);
-        egui::ComboBox::from_id_salt("material")
-            .selected_text(shown)
-            .show_ui(ui, |ui| {
-                for material in MATERIALS {
-                    if ui
-                        .selectable_label(material.id == now, material.name)
-                        .clicked()
-                    {
-                        ask.push(Ask::Material {
-                            ids: Vec::new(),
-                            material: Some(material.id.to_owned()),
-                        });
-                    }
-                }
-            });
-    });
 }
 
 fn colour(rgb: Option<[u8; 3]>) -> Ask {

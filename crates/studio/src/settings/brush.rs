@@ -57,6 +57,8 @@ pub struct BrushSettings {
     pub reach: f32,
     /// The volume brush, by its id in the library.
     pub volume: String,
+    /// What a new painting is made of, by its id; nothing for what is usual.
+    pub material: String,
 }
 
 impl Default for BrushSettings {
@@ -70,6 +72,7 @@ impl Default for BrushSettings {
             blend: 1.0,
             reach: 1.75,
             volume: "brush/horse".to_owned(),
+            material: String::new(),
         }
     }
 }

@@ -11,6 +11,7 @@ use midair_document::{Document, Kind, Object, ObjectId};
 use midair_field::{Node, Recipe};
 use midair_mesh::{MeshHash, TriMesh};
 
+use super::material::{Dress, Worn};
 use super::{Drafts, transform};
 use crate::StudioSet;
 use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made, ONE_BY_ONE, merged};
@@ -145,13 +146,7 @@ fn show(
     mut evaluations: ResMut<Evaluations>,
     mut drawn: ResMut<Drawn>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut objects: Query<(
-        Entity,
-        &ObjectEntity,
-        &mut Showing,
-        &MeshMaterial3d<StandardMaterial>,
-        Option<&Children>,
-    )>,
+    mut objects: Query<(Entity, &ObjectEntity, &mut Showing, Worn, Option<&Children>)>,
     stand_ins: Query<(), Or<(With<StandIn>, With<CloneOf>)>>,
     delivered: Res<Delivered>,
     mut awake: Local<u8>,
@@ -225,7 +220,7 @@ fn show(
                         } else {
                             pieces
                         };
-                        stand(each, look, entity, id.0, &mut commands);
+                        stand(each, &Dress::of(look), entity, id.0, &mut commands);
                     }
                     None => {
                         commands.entity(entity).insert(Mesh3d(handle));
@@ -316,17 +311,23 @@ fn one_by_one(
 /// What a row of clones is drawn as: children of its entity, that look as it does.
 fn stand(
     each: Vec<(Handle<Mesh>, Transform)>,
-    look: &MeshMaterial3d<StandardMaterial>,
+    look: &Dress,
     row: Entity,
     object: ObjectId,
     commands: &mut Commands,
 ) {
-    let look = look.clone();
-    let drawn = each.into_iter().map(move |(mesh, at)| {
-        let drawn = (Mesh3d(mesh), look.clone(), at);
-        (CloneOf(object), drawn, ChildOf(row))
-    });
-    commands.spawn_batch(drawn.collect::<Vec<_>>());
+    let clone = move |(mesh, at)| (CloneOf(object), Mesh3d(mesh), at, ChildOf(row));
+    let each = each.into_iter().map(clone);
+    match look.clone() {
+        Dress::Plain(look) => {
+            let drawn = each.map(move |clone| (clone, MeshMaterial3d(look.clone())));
+            commands.spawn_batch(drawn.collect::<Vec<_>>());
+        }
+        Dress::Living(look) => {
+            let drawn = each.map(move |clone| (clone, MeshMaterial3d(look.clone())));
+            commands.spawn_batch(drawn.collect::<Vec<_>>());
+        }
+    }
 }
 
 /// Until a fresh result is there, its operands are shown where they stood.

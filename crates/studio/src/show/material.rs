@@ -1,15 +1,69 @@
+use bevy::shader::Shader;
 use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::Face};
-use midair_document::{Kind, Object};
-use midair_solid::{INK, MATERIALS, MaterialInfo};
+use midair_document::{Kind, Object, ObjectId};
+use midair_solid::{INK, MOST_DIALS, MaterialInfo};
 
 use super::follow::CloneOf;
 use super::{Cue, Cues, ObjectEntity, Tint};
+use crate::materials::{DialDraft, Living, MaterialShelf, Written, values};
 use crate::project::Project;
 use crate::settings::{LinesShown, RoomKind, Settings};
 
 /// One material per look, made when first needed.
 #[derive(Resource, Default)]
-struct Looks(HashMap<Look, Handle<StandardMaterial>>);
+struct Looks {
+    plain: HashMap<Look, Handle<StandardMaterial>>,
+    living: HashMap<Look, Handle<Living>>,
+}
+
+/// Looks that are kept although nothing wears them at the moment.
+const KEPT: usize = 64;
+
+/// What an entity is drawn with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Dress {
+    Plain(Handle<StandardMaterial>),
+    Living(Handle<Living>),
+}
+
+impl Default for Dress {
+    fn default() -> Self {
+        Self::Plain(Handle::default())
+    }
+}
+
+/// What an entity is drawn with, as it is found.
+pub(super) type Worn = (
+    Option<&'static MeshMaterial3d<StandardMaterial>>,
+    Option<&'static MeshMaterial3d<Living>>,
+);
+
+impl Dress {
+    pub(super) fn of(
+        worn: (
+            Option<&MeshMaterial3d<StandardMaterial>>,
+            Option<&MeshMaterial3d<Living>>,
+        ),
+    ) -> Self {
+        match worn {
+            (_, Some(living)) => Self::Living(living.0.clone()),
+            (Some(plain), None) => Self::Plain(plain.0.clone()),
+            (None, None) => Self::default(),
+        }
+    }
+
+    /// Puts it on, in place of what was worn.
+    pub(super) fn put_on(&self, entity: &mut EntityCommands) {
+        match self {
+            Self::Plain(handle) => entity
+                .try_remove::<MeshMaterial3d<Living>>()
+                .try_insert(MeshMaterial3d(handle.clone())),
+            Self::Living(handle) => entity
+                .try_remove::<MeshMaterial3d<StandardMaterial>>()
+                .try_insert(MeshMaterial3d(handle.clone())),
+        };
+    }
+}
 
 /// What decides how a thing looks; things that look alike share one material.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,8 +73,12 @@ struct Look {
     selected: bool,
     ghost: bool,
     own: Option<[u8; 3]>,
-    /// Which of [`MATERIALS`].
+    /// The place of its material, how often that was read, and the bits of what is set of it.
     material: usize,
+    version: u32,
+    dials: [u32; MOST_DIALS],
+    /// Whether time changes it.
+    moves: bool,
     /// A mirror image shows the other side of its triangles.
     mirrored: bool,
     ink: Option<Ink>,
@@ -62,28 +120,61 @@ impl Ink {
 }
 
 impl Look {
-    fn of(object: &Object, cue: &Cue, settings: &Settings) -> Self {
+    fn of(
+        id: ObjectId,
+        object: &Object,
+        cue: &Cue,
+        settings: &Settings,
+        shelf: &MaterialShelf,
+        draft: &DialDraft,
+    ) -> Self {
+        let material = shelf.all().place(object);
+        let mut dials = [0; MOST_DIALS];
+        let set = values(shelf.all().at(material), id, object, draft);
+        for (slot, value) in dials.iter_mut().zip(set) {
+            *slot = value.to_bits();
+        }
         Self {
             tint: cue.tint,
             touched: cue.touched,
             selected: cue.selected,
             ghost: cue.ghost,
             own: object.colour.map(|c| c.0),
-            material: MaterialInfo::index_of(object),
+            material,
+            version: shelf.version(material),
+            dials,
+            moves: settings.look.motion,
             mirrored: object.placement.scale.to_array().iter().product::<f32>() < 0.0,
             ink: Ink::of(&object.kind, settings),
             open: object.sheet().is_some(),
         }
     }
 
-    fn material(self) -> StandardMaterial {
+    /// Whether what its file says is drawn: not where an operand's colour or a shell says something else.
+    fn lives(self, info: &MaterialInfo) -> bool {
+        let says = matches!(self.tint, Tint::Plain | Tint::Fresh);
+        info.wgsl.is_some() && says && !self.ghost && self.ink.is_none()
+    }
+
+    fn living(self, info: &MaterialInfo) -> Living {
+        let worn = Self {
+            tint: Tint::Plain,
+            ..self
+        };
+        Living {
+            base: worn.material(info),
+            extension: Written::new(self.material, &self.dials.map(f32::from_bits), self.moves),
+        }
+    }
+
+    fn material(self, info: &MaterialInfo) -> StandardMaterial {
         // An operand's colour says what it does and comes before its own.
         let base = match (self.tint, self.own) {
             (Tint::Plain, Some([r, g, b])) => Color::srgb_u8(r, g, b),
             (Tint::Plain, None) if let Some(ink) = self.ink => ink.colour(),
+            (Tint::Plain, None) if let Some([r, g, b]) = info.colour => Color::srgb_u8(r, g, b),
             (tint, _) => tint.colour(),
         };
-        let info = MATERIALS[self.material];
         let alpha = match (self.ghost, self.touched || self.selected) {
             (true, true) => 0.42,
             (true, false) => 0.2,
@@ -140,7 +231,9 @@ pub(super) fn plugin(app: &mut App) {
             paint.run_if(
                 resource_changed::<Cues>
                     .or_else(resource_changed::<Project>)
-                    .or_else(resource_changed::<Settings>),
+                    .or_else(resource_changed::<Settings>)
+                    .or_else(resource_changed::<MaterialShelf>)
+                    .or_else(resource_changed::<DialDraft>),
             ),
         );
 }
@@ -149,37 +242,62 @@ fn paint(
     cues: Res<Cues>,
     project: Res<Project>,
     settings: Res<Settings>,
+    draft: Res<DialDraft>,
+    mut shelf: ResMut<MaterialShelf>,
     mut looks: ResMut<Looks>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut objects: Query<(&ObjectEntity, &mut MeshMaterial3d<StandardMaterial>), Without<CloneOf>>,
-    mut clones: Query<(&CloneOf, &mut MeshMaterial3d<StandardMaterial>)>,
+    mut plain: ResMut<Assets<StandardMaterial>>,
+    mut living: ResMut<Assets<Living>>,
+    mut shaders: ResMut<Assets<Shader>>,
+    objects: Query<(Entity, &ObjectEntity, Worn), Without<CloneOf>>,
+    clones: Query<(Entity, &CloneOf)>,
+    mut commands: Commands,
 ) {
     let mut changed = Vec::new();
-    let plain = Cue::default();
-    for (object, mut material) in &mut objects {
-        let cue = cues.0.get(&object.0).unwrap_or(&plain);
+    let usual = Cue::default();
+    for (entity, object, worn) in &objects {
+        let cue = cues.0.get(&object.0).unwrap_or(&usual);
         let Some(thing) = project.document().object(object.0) else {
             continue;
         };
         if thing.reference().is_some() {
             continue;
         }
-        let look = Look::of(thing, cue, &settings);
-        let wanted = looks
-            .0
-            .entry(look)
-            .or_insert_with(|| materials.add(look.material()));
-        if material.0 != *wanted {
-            material.0 = wanted.clone();
-            changed.push((object.0, wanted.clone()));
+        let look = Look::of(object.0, thing, cue, &settings, &shelf, &draft);
+        let info = shelf.all().at(look.material);
+        let wanted = if look.lives(info) {
+            let handle = match looks.living.get(&look) {
+                Some(handle) => handle.clone(),
+                None => {
+                    let handle = living.add(look.living(info));
+                    looks.living.insert(look, handle.clone());
+                    shelf
+                        .bypass_change_detection()
+                        .ready(look.material, &mut shaders);
+                    handle
+                }
+            };
+            Dress::Living(handle)
+        } else {
+            let made = || plain.add(look.material(info));
+            Dress::Plain(looks.plain.entry(look).or_insert_with(made).clone())
+        };
+        if Dress::of(worn) != wanted {
+            wanted.put_on(&mut commands.entity(entity));
+            changed.push((object.0, wanted));
         }
+    }
+    if looks.living.len() > KEPT {
+        looks.living.retain(|_, handle| match handle {
+            Handle::Strong(strong) => std::sync::Arc::strong_count(strong) > 1,
+            Handle::Uuid(..) => true,
+        });
     }
     if changed.is_empty() || clones.is_empty() {
         return;
     }
-    for (of, mut material) in &mut clones {
+    for (entity, of) in &clones {
         if let Some((_, look)) = changed.iter().find(|(id, _)| *id == of.0) {
-            material.0 = look.clone();
+            look.put_on(&mut commands.entity(entity));
         }
     }
 }

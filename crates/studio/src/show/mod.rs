@@ -19,7 +19,6 @@ use midair_field::Placement;
 pub use cue::{Cue, Cues, Tint};
 pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh};
 pub use form::form;
-pub use midair_solid::{MATERIALS, MaterialInfo};
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, Unhurried, camera, headset, is_software};
 

@@ -24,7 +24,7 @@ pub(super) fn reflect(
     map: Res<ObjectMap>,
     mut drafts: ResMut<Drafts>,
     mut reflected: ResMut<Reflected>,
-    looks: Query<(&Mesh3d, &MeshMaterial3d<StandardMaterial>), Without<Ghost>>,
+    looks: Query<(&Mesh3d, Option<&MeshMaterial3d<StandardMaterial>>), Without<Ghost>>,
     mut ghosts: Query<
         (
             Entity,
@@ -78,7 +78,12 @@ pub(super) fn reflect(
     }
     let mut missing = missing.into_iter().filter_map(|(id, there)| {
         let (mesh, look) = looks.get(map.get(id)?).ok()?;
-        Some((mesh.clone(), look.clone(), transform(&there)))
+        // One that is written in WGSL is seen plain until it is let go.
+        Some((
+            mesh.clone(),
+            look.cloned().unwrap_or_default(),
+            transform(&there),
+        ))
     });
     for (entity, mut mesh, mut look, mut at) in &mut ghosts {
         match missing.next() {

@@ -204,9 +204,14 @@ impl<'a> Sides<'a> {
                 id,
                 colour: *colour,
             }),
-            Edit::SetMaterial { id, material } => self.each(*id, |id| Edit::SetMaterial {
+            Edit::SetMaterial {
+                id,
+                material,
+                dials,
+            } => self.each(*id, |id| Edit::SetMaterial {
                 id,
                 material: material.clone(),
+                dials: dials.clone(),
             }),
             Edit::SetLayer { id, layer } => {
                 self.each(*id, |id| Edit::SetLayer { id, layer: *layer });

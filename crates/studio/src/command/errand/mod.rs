@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use midair_document::{Edit, ImageHash, Journal, MeshSpool, Object, ObjectId, Opened, open, save};
 use midair_field::Recipe;
 use midair_library::Volumes;
-use midair_mesh::{MeshHash, TriMesh, Unit, Up};
+use midair_mesh::{MeshHash, TriMesh};
 use midair_solid::{ExportOptions, export};
 
 use crate::StudioSet;
@@ -31,10 +31,7 @@ pub(crate) enum Errand {
     Save(PathBuf),
     Export {
         path: PathBuf,
-        step: Option<f32>,
-        unit: Option<Unit>,
-        up: Option<Up>,
-        only: Option<ObjectId>,
+        options: ExportOptions,
     },
     /// Read a picture to work from.
     Reference {
@@ -178,13 +175,7 @@ impl Errands {
                     }
                 }),
             ),
-            Errand::Export {
-                path,
-                step,
-                unit,
-                up,
-                only,
-            } => {
+            Errand::Export { path, options } => {
                 let cancelled = cancelled.clone();
                 (
                     format!("Exporting {}", name(&path)),
@@ -193,12 +184,6 @@ impl Errands {
                             return Outcome::Cancelled;
                         };
                         make_folder(&path);
-                        let options = ExportOptions {
-                            step,
-                            unit,
-                            up,
-                            only,
-                        };
                         match export(&path, &document, &store, &*volumes, &options, &cancelled) {
                             Ok(triangles) => Outcome::Exported(path, triangles),
                             Err(_) if cancelled.load(Ordering::Relaxed) => Outcome::Cancelled,
