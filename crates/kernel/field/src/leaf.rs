@@ -56,6 +56,21 @@ impl Leaf {
         }
     }
 
+    /// What stands there.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The way into its own frame, and the metres that φ claims for one there.
+    pub fn place(&self) -> (Affine3A, f32) {
+        (self.to_local, self.scale)
+    }
+
+    /// How large a cube and a ball of the world are there: half diagonal, half extents, half extents.
+    pub fn sizes(&self) -> (f32, Vec3, Vec3) {
+        (self.diagonal, self.extent, self.reach)
+    }
+
     /// φ at a point of the world.
     pub fn at(&self, p: Vec3) -> f32 {
         let world = p;

@@ -19,6 +19,7 @@ mod recipe;
 mod scratch;
 mod shape;
 mod stretch;
+mod view;
 
 pub use canvas::{
     CANVAS_THRESHOLD, Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke,
@@ -32,6 +33,7 @@ pub use placement::Placement;
 pub use primitive::{MAX_CONTOUR_POINTS, MAX_HULL_POINTS, MAX_LENGTH, Primitive, PrimitiveError};
 pub use program::{CompileError, MAX_LEAVES, MeshSource, Program, local_step};
 pub use recipe::{MAX_DEPTH, MAX_OPERANDS, Node, Op, Operand, Recipe, RecipeError};
+pub use view::{ConvexView, Form, LeafView, OutlineEdge, TapeStep, VolumeView};
 
 #[cfg(test)]
 mod tests;

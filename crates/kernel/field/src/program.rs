@@ -492,7 +492,7 @@ fn axes(m: &Mat3A) -> (Vec3, bool) {
 }
 
 /// The smallest and the largest singular value.
-fn singular(m: &Mat3A) -> (f32, f32) {
+pub(crate) fn singular(m: &Mat3A) -> (f32, f32) {
     let (scale, right) = axes(m);
     if right {
         // Rotations leave lengths a few bits off; what is rigid is exactly so.

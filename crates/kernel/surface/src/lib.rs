@@ -20,3 +20,4 @@ mod weld;
 
 pub use dense::grid_from_fn;
 pub use surface::{Cancelled, Chunk, ChunkKey, Surface};
+pub use table::{MOST_TRIANGLES, cases};

@@ -24,6 +24,16 @@ pub(crate) struct Row {
 pub(crate) static TABLE: LazyLock<[Row; 256]> =
     LazyLock::new(|| std::array::from_fn(|case| Row::new(case as u8)));
 
+/// The most triangles in one of the [`cases`].
+pub const MOST_TRIANGLES: usize = MOST;
+
+/// The triangles of the 256 cases, for evaluators elsewhere. Bit x + 2y + 4z of a case says that the corner
+/// (x, y, z) lies inside; a triangle's corners are cell edges 4·axis + u + 2·v, (u, v) being the coordinates of
+/// the edge's first corner along the two following axes, cyclically.
+pub fn cases() -> [Vec<[u8; 3]>; 256] {
+    std::array::from_fn(|case| triangles(case as u8))
+}
+
 /// The axis of a cell edge and the corner it starts from. Edges are numbered 4·axis + u + 2·v,
 /// (u, v) being the corner's coordinates along the two following axes, cyclically.
 const fn edge(e: u8) -> (usize, [usize; 3]) {

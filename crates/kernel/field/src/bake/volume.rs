@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::BakeError;
 use super::frame::{Frame, NODES, SIDE};
 use super::sample::slope_of;
+use crate::VolumeView;
 
 /// Marks a table entry whose brick keeps every node.
 pub(super) const NEAR: u32 = 1 << 31;
@@ -130,6 +131,18 @@ impl Volume {
     /// The number of cells along each axis.
     pub fn cells(&self) -> UVec3 {
         self.frame.cells
+    }
+
+    /// What it keeps, for evaluators elsewhere.
+    pub fn view(&self) -> VolumeView<'_> {
+        VolumeView {
+            origin: self.frame.origin,
+            step: self.frame.step,
+            cells: self.frame.cells,
+            table: &self.table,
+            ranges: &self.ranges,
+            values: &self.values,
+        }
     }
 
     /// The memory it takes, bytes.

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::round::{greater, lesser};
 use super::{NODES, Points};
-use crate::PrimitiveError;
+use crate::{ConvexView, PrimitiveError};
 
 /// A convex polyhedron: its face planes for the inside, its faces and edges for the outside.
 #[derive(Clone, Debug)]
@@ -127,6 +127,21 @@ impl Convex {
             walls,
             edges,
         })
+    }
+
+    /// Its planes, walls and edges as numbers.
+    pub fn view(&self) -> ConvexView {
+        let plane = |p: &Plane| [p.normal.x, p.normal.y, p.normal.z, p.offset];
+        let edge = |e: &Edge| [e.a.x, e.a.y, e.a.z, e.d.x, e.d.y, e.d.z, e.inverse];
+        ConvexView {
+            planes: self.planes.iter().map(plane).collect(),
+            walls: self
+                .walls
+                .iter()
+                .map(|w| w.iter().map(plane).collect())
+                .collect(),
+            edges: self.edges.iter().map(edge).collect(),
+        }
     }
 
     fn highest(&self, p: Vec3) -> f32 {

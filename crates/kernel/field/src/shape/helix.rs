@@ -31,6 +31,11 @@ impl Helix {
         }
     }
 
+    /// Major and minor radius, rise per radian, hand, end.
+    pub fn numbers(&self) -> [f32; 5] {
+        [self.major, self.minor, self.rise, self.hand, self.end]
+    }
+
     #[inline(always)]
     pub fn at(&self, x: f32, y: f32, z: f32) -> f32 {
         let z = z * self.hand;

@@ -105,6 +105,12 @@ impl Polygon {
         Self { edges, groups }
     }
 
+    /// Each edge's start, direction, 1/|d|², y of the end, dx/dy.
+    pub fn numbers(&self) -> Vec<[f32; 7]> {
+        let all = |e: &Edge| [e.a.x, e.a.y, e.d.x, e.d.y, e.inverse, e.end, e.slope];
+        self.edges.iter().map(all).collect()
+    }
+
     /// Signed distance in the plane, negative inside.
     pub fn at(&self, x: f32, y: f32) -> f32 {
         let p = Vec2::new(x, y);

@@ -84,6 +84,11 @@ impl Frustum {
         }
     }
 
+    /// Bottom radius, top radius, half height.
+    pub fn numbers(&self) -> [f32; 3] {
+        [self.bottom, self.top, self.half]
+    }
+
     #[inline(always)]
     pub fn at(&self, x: f32, y: f32, z: f32) -> f32 {
         let r = hypot(x, z);
@@ -119,6 +124,11 @@ impl Ellipsoid {
             half,
             excess: (half - 1.0) * (half + 1.0),
         }
+    }
+
+    /// Smallest half extent, half extents in units of it, their squares less 1.
+    pub fn numbers(&self) -> (f32, Vec3, Vec3) {
+        (self.unit, self.half, self.excess)
     }
 
     #[inline(always)]

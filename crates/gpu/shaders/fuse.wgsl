@@ -1,0 +1,104 @@
+// Fuses the operands that were left for a brick at its 8³ nodes (EasyVRModeling §5.3 Eq. 7) and
+// keeps it if the surface may be near. 8×8×4 invocations, two nodes each.
+
+var<workgroup> brick_low: atomic<u32>;
+var<workgroup> brick_high: atomic<u32>;
+var<workgroup> brick_count: u32;
+var<workgroup> brick_entry_now: u32;
+
+// Keeps the order of floats.
+fn ordered(v: f32) -> u32 {
+    let u = bitcast<u32>(v);
+    return select(u | 0x80000000u, ~u, (u >> 31u) == 1u);
+}
+
+fn unordered(u: u32) -> f32 {
+    return bitcast<f32>(select(~u, u & 0x7fffffffu, (u >> 31u) == 1u));
+}
+
+fn take_slot() -> u32 {
+    let free = bitcast<i32>(atomicSub(&counters[FREE], 1u));
+    if free > 0 {
+        return bricks[STRIDE * u32(free - 1) + FREE_SLOT];
+    }
+    let slot = atomicAdd(&counters[SLOTS], 1u);
+    if slot >= g.slots {
+        failed(NO_SLOTS);
+        return NONE;
+    }
+    return slot;
+}
+
+fn fused(b: Block, node: u32) -> f32 {
+    let l = vec3<i32>(vec3(node & 7u, (node >> 3u) & 7u, node >> 6u));
+    let p = vec3<f32>(block_at(b) * 8 + l) * g.step;
+    let v = evaluate(b.off, b.len, p);
+    return select(v, g.eps, abs(v) < g.eps);
+}
+
+// Whether φ of these operands is known to be no steeper than 1.
+fn is_gentle(b: Block) -> bool {
+    for (var i = b.off; i < b.off + b.len; i++) {
+        let instr = tape[i];
+        if (instr >> 29u) == LOAD && program[LEAF * (instr & 0x1fffffffu)] == VOLUME {
+            return false;
+        }
+    }
+    return true;
+}
+
+fn quantum(v: f32) -> u32 {
+    return bitcast<u32>(i32(clamp(round(v / g.eps), -32767.0, 32767.0))) & 0xffffu;
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
+    if lid == 0u {
+        brick_count = min(atomicLoad(&counters[stage.count_in]), g.blocks);
+        atomicStore(&brick_low, NONE);
+        atomicStore(&brick_high, 0u);
+    }
+    let count = workgroupUniformLoad(&brick_count);
+    let index = flat_group(group);
+    if index >= count {
+        return;
+    }
+    let b = blocks[stage.from_block + index];
+    let pair = vec2(fused(b, 2u * lid), fused(b, 2u * lid + 1u));
+    atomicMin(&brick_low, ordered(min(pair.x, pair.y)));
+    atomicMax(&brick_high, ordered(max(pair.x, pair.y)));
+    workgroupBarrier();
+    if lid == 0u {
+        let low = unordered(atomicLoad(&brick_low));
+        let high = unordered(atomicLoad(&brick_high));
+        let clear = max(low, -high) / (1.01 * g.around);
+        var entry = select(OUTSIDE, INSIDE, high < 0.0);
+        if !(clear > 1.0 && is_gentle(b)) {
+            let slot = take_slot();
+            entry = OUTSIDE;
+            if slot != NONE {
+                entry = NEAR + slot;
+                let r = STRIDE * slot;
+                bricks[r] = bitcast<u32>(b.x);
+                bricks[r + 1u] = bitcast<u32>(b.y);
+                bricks[r + 2u] = bitcast<u32>(b.z);
+                bricks[r + ALIVE] = 1u;
+                bricks[r + VERTEX_COUNT] = 0u;
+                bricks[r + TRIANGLE_COUNT] = 0u;
+            }
+        }
+        atomicStore(&pages[entry_at(b.table, block_at(b))], entry);
+        brick_entry_now = entry;
+    }
+    let entry = workgroupUniformLoad(&brick_entry_now);
+    if entry < NEAR {
+        return;
+    }
+    let slot = entry - NEAR;
+    if QUANTISED {
+        values[256u * slot + lid] = quantum(pair.x) | (quantum(pair.y) << 16u);
+    } else {
+        values[512u * slot + 2u * lid] = bitcast<u32>(pair.x);
+        values[512u * slot + 2u * lid + 1u] = bitcast<u32>(pair.y);
+    }
+}

@@ -1,0 +1,47 @@
+//! The field on the GPU: bricks, fusion and marching cubes as compute passes on plain wgpu, without Bevy.
+//!
+//! A [`Gpu`] is a device with its passes compiled. A [`GpuSolid`] is one solid on it: a pool of 8³ bricks and a page
+//! table without fixed extent, made from a [`midair_field::Program`] and brought up to date by
+//! [`GpuSolid::update`], which runs again only the bricks that an edit touched. The processor's kernels are the
+//! reference: fields agree to 1e-4 steps near the surface, and the mesh has the same topology.
+//!
+//! Everything that can be missing or fail is a [`GpuError`], so that the caller can go on without a GPU.
+//!
+//! ```no_run
+//! use midair_field::{Placement, Primitive, Program};
+//! use midair_gpu::{Gpu, GpuOptions, GpuSolid};
+//!
+//! let gpu = Gpu::open(&GpuOptions::default())?;
+//! let ball = Primitive::Sphere { radius: 0.2 }.into();
+//! let program = Program::compile(&ball, &Placement::IDENTITY, 0.01, &())?;
+//! let solid = GpuSolid::make(&gpu, &program)?;
+//! let mesh = solid.mesh()?;
+//! assert!(!mesh.triangles.is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! - `device`: adapters, limits, what is lost.
+//! - `kernels`: the passes by name, compiled from `shaders/`.
+//! - `layout`: structs and numbers that Rust and WGSL share.
+//! - `flatten`: a program as words for the device.
+//! - `memory`: buffers within a budget.
+//! - `solid`: making and updating; `passes`: what is run for it, in which order.
+//! - `read`: meshes and fields back in main memory.
+
+mod device;
+mod error;
+mod flatten;
+mod kernels;
+mod layout;
+mod memory;
+mod passes;
+mod read;
+mod solid;
+mod wait;
+
+pub use device::{Adapter, Gpu, GpuOptions};
+pub use error::GpuError;
+pub use solid::{GpuSolid, Memory, SolidOptions, Timing};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,4 @@
+mod errors;
+mod reference;
+mod shaders;
+mod support;
