@@ -60,7 +60,6 @@ pub(crate) struct Block {
 pub(crate) const LEAF: usize = 32;
 /// Words of a brick's record.
 pub(crate) const STRIDE: usize = 104;
-pub(crate) const VERTEX_COUNT: usize = 5;
 pub(crate) const ALIVE: usize = 8;
 /// Values on the stack of a tape at most, less one for safety.
 pub(crate) const DEEPEST: usize = 33;
@@ -88,7 +87,6 @@ pub(crate) mod counter {
     /// Lists of blocks, one for each level.
     pub const LEVELS: usize = 16;
     pub const VERTEX_HEADS: usize = 48;
-    pub const TRIANGLE_HEADS: usize = 56;
     /// How many there are.
     pub const COUNT: usize = 64;
 }

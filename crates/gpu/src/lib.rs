@@ -26,6 +26,7 @@
 //! - `flatten`: a program as words for the device.
 //! - `memory`: buffers within a budget.
 //! - `solid`: making and updating; `passes`: what is run for it, in which order.
+//! - [`measure`]: workloads that are timed.
 //! - `read`: meshes and fields back in main memory.
 
 mod device;
@@ -33,6 +34,7 @@ mod error;
 mod flatten;
 mod kernels;
 mod layout;
+pub mod measure;
 mod memory;
 mod passes;
 mod read;

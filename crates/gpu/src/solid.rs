@@ -146,6 +146,14 @@ impl GpuSolid {
         self.remake(program, &flat)
     }
 
+    /// Makes it whole on the buffers it has.
+    ///
+    /// # Errors
+    /// As [`GpuSolid::make`].
+    pub fn make_again(&mut self, program: &Program) -> Result<(), GpuError> {
+        self.remake(program, &Flat::new(program)?)
+    }
+
     /// Metres between nodes.
     pub fn step(&self) -> f32 {
         self.globals.step

@@ -1,7 +1,13 @@
 //! One suite on both backends: the processor's kernels are the reference.
 
-use glam::Vec3;
-use midair_field::{FuseOptions, Grid, Node, Op, Primitive, Program, Recipe, fuse};
+use std::sync::{Arc, OnceLock};
+
+use glam::{Quat, Vec3};
+use midair_field::bake::Volume;
+use midair_field::{
+    FuseOptions, Grid, MeshSource, Node, Op, Operand, Placement, Primitive, Program, Recipe, fuse,
+};
+use midair_mesh::{Aabb, MeshHash};
 use midair_surface::Surface;
 
 use super::support::*;
@@ -19,10 +25,53 @@ fn suite() -> Vec<(String, Program)> {
         .map(|(i, p)| (format!("primitive {i}"), compile(&p.into(), 1.0 / 64.0)))
         .collect();
     all.push(("nested".into(), compile(&nested(), 0.01)));
+    all.push(("baked meshes".into(), baked(0.012)));
     for (name, recipe) in table_1() {
         all.push((name.into(), compile(&recipe, 0.01)));
     }
     all
+}
+
+/// Meshes that were baked, turned, stretched and cut, beside an exact part.
+fn baked(step: f32) -> Program {
+    let mesh = Recipe::new(Node::Mesh {
+        mesh: MeshHash([0; 32]),
+        bounds: Aabb::around(Vec3::ZERO, Vec3::splat(0.5)),
+    });
+    let placed = |op, at: [f32; 3], turn: f32, scale: f32| Operand {
+        op,
+        placement: Placement {
+            translation: at.into(),
+            rotation: Quat::from_rotation_z(turn),
+            scale: Vec3::new(scale, 1.0, 0.8),
+        },
+        recipe: mesh.clone(),
+        muted: false,
+    };
+    let recipe = Recipe::new(Node::Solid(vec![
+        placed(Op::Union, [0.0; 3], 0.3, 1.0),
+        placed(Op::Union, [0.3, 0.1, 0.2], 2.0, 1.3),
+        placed(Op::Subtract, [-0.2, 0.1, 0.0], 1.0, 0.6),
+        operand(
+            Op::Union,
+            Vec3::new(0.0, -0.4, 0.0),
+            Primitive::Sphere { radius: 0.15 },
+        ),
+    ]));
+    Program::compile(&recipe, &Placement::IDENTITY, step, &Torus).expect("sound")
+}
+
+/// A source that knows one mesh.
+struct Torus;
+
+impl MeshSource for Torus {
+    fn volume(&self, _: &MeshHash, _: f32) -> Option<Arc<Volume>> {
+        static ONE: OnceLock<Arc<Volume>> = OnceLock::new();
+        let torus = |p: Vec3| (p.x.hypot(p.y) - 0.28).hypot(p.z) - 0.12;
+        let around = Aabb::around(Vec3::ZERO, Vec3::splat(0.5));
+        let bake = || Arc::new(Volume::from_fn(around, 1.0 / 63.0, torus).expect("fits"));
+        Some(ONE.get_or_init(bake).clone())
+    }
 }
 
 #[test]

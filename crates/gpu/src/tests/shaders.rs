@@ -102,7 +102,6 @@ fn constants_agree() {
     let words = [
         ("LEAF", LEAF as u32),
         ("STRIDE", STRIDE as u32),
-        ("VERTEX_COUNT", VERTEX_COUNT as u32),
         ("ALIVE", ALIVE as u32),
         ("NONE", NONE),
         ("INSIDE", INSIDE),
@@ -120,7 +119,6 @@ fn constants_agree() {
         ("ALL_VERTICES", counter::ALL_VERTICES as u32),
         ("ALL_TRIANGLES", counter::ALL_TRIANGLES as u32),
         ("VERTEX_HEADS", counter::VERTEX_HEADS as u32),
-        ("TRIANGLE_HEADS", counter::TRIANGLE_HEADS as u32),
         ("NO_SLOTS", overflow::SLOTS),
         ("NO_CHUNKS", overflow::CHUNKS),
         ("NO_BLOCKS", overflow::BLOCKS),
