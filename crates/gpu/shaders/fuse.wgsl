@@ -36,15 +36,16 @@ fn fused(b: Block, node: u32) -> f32 {
     return select(v, g.eps, abs(v) < g.eps);
 }
 
-// Whether φ of these operands is known to be no steeper than 1.
-fn is_gentle(b: Block) -> bool {
+// The greatest |∇φ| on a brick and a little around it; HUGE where it is not known.
+fn steepest(b: Block) -> f32 {
+    let centre = (vec3<f32>(block_at(b)) * 8.0 + vec3(3.5)) * g.step;
+    var most = 1.0;
     for (var i = b.off; i < b.off + b.len; i++) {
-        let instr = tape[i];
-        if (instr >> 29u) == LOAD && program[LEAF * (instr & 0x1fffffffu)] == VOLUME {
-            return false;
+        if (tape[i] >> 29u) == LOAD {
+            most = max(most, leaf_slope(tape[i] & 0x1fffffffu, centre, 3.5 * g.step, g.around));
         }
     }
-    return true;
+    return most;
 }
 
 fn quantum(v: f32) -> u32 {
@@ -73,7 +74,7 @@ fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         let high = unordered(atomicLoad(&brick_high));
         let clear = max(low, -high) / (1.01 * g.around);
         var entry = select(OUTSIDE, INSIDE, high < 0.0);
-        if !(clear > 1.0 && is_gentle(b)) {
+        if clear <= 1.0 || clear <= steepest(b) {
             let slot = take_slot();
             entry = OUTSIDE;
             if slot != NONE {

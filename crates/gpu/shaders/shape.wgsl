@@ -396,3 +396,31 @@ fn leaf_bounds(leaf: u32, centre: vec3<f32>, half: f32, around: f32) -> vec2<f32
     let v = shape_at(l, c);
     return scale * vec2(v - r, v + r);
 }
+
+// The greatest |∇φ| of a leaf no further than `around` from a cube, HUGE where it is not known.
+fn leaf_slope(leaf: u32, centre: vec3<f32>, half: f32, around: f32) -> f32 {
+    let l = LEAF * leaf;
+    if program[l] != VOLUME {
+        return 1.0;
+    }
+    let f = frame_of(program[l + 1u]);
+    let c = to_local(l, centre);
+    let size = triple(l + 16u) * half + triple(l + 19u) * around;
+    let low = (c - size - f.origin) / f.step - vec3(1.0e-3);
+    let high = (c + size - f.origin) / f.step + vec3(1.0e-3);
+    if any(low < vec3(0.0)) || any(high > vec3<f32>(f.cells)) {
+        return HUGE;
+    }
+    let lo = vec3<u32>(low / 8.0);
+    let hi = min(vec3<u32>(high / 8.0), f.bricks - vec3(1u));
+    var most = 0.0;
+    for (var z = lo.z; z <= hi.z; z++) {
+        for (var y = lo.y; y <= hi.y; y++) {
+            for (var x = lo.x; x <= hi.x; x++) {
+                let index = x + f.bricks.x * (y + f.bricks.y * z);
+                most = max(most, volume_number(f.ranges + 3u * index + 2u));
+            }
+        }
+    }
+    return select(HUGE, most / f.step, most < HUGE);
+}

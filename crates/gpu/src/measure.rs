@@ -33,8 +33,10 @@ pub struct Work {
 enum Kind {
     /// A recipe at a step.
     Task(&'static str, f32),
-    /// Five baked tori of 64³ nodes in a lattice of so many nodes, a side of two metres.
+    /// Five tori in a lattice of so many nodes, a side of two metres.
     Tori(u32),
+    /// The same, baked to 64³ nodes each.
+    Baked(u32),
     /// The same, a ball of so many nodes across moved on its surface.
     Dab { nodes: u32, within: u32 },
     /// The chair at so many nodes along its longest side.
@@ -97,6 +99,7 @@ pub fn all() -> Vec<Work> {
     }
     let mut add = |name: String, kind| all.push(Work { name, kind });
     add("gpu/full-256".into(), Kind::Tori(256));
+    add("gpu/baked-256".into(), Kind::Baked(256));
     let dab = |nodes, within| Kind::Dab { nodes, within };
     add("gpu/dab-32-in-256".into(), dab(32, 256));
     add("gpu/dab-in-512".into(), dab(32, 512));
@@ -122,11 +125,13 @@ fn torus() -> Result<One, String> {
     Ok(One(Arc::new(volume)))
 }
 
-fn tori(step: f32, meshes: &One, dab: Option<(f32, Vec3)>) -> Result<Program, String> {
-    let mesh = Recipe::new(Node::Mesh {
-        mesh: MeshHash([0; 32]),
-        bounds: Aabb::around(Vec3::ZERO, Vec3::splat(0.5)),
-    });
+/// Where each of the tori has the z axis for its own.
+fn tori(
+    step: f32,
+    one: &Recipe,
+    meshes: &dyn MeshSource,
+    dab: Option<(f32, Vec3)>,
+) -> Result<Program, String> {
     let mut operands: Vec<Operand> = PLACES
         .map(|(angle, place)| Operand {
             op: Op::Union,
@@ -135,7 +140,7 @@ fn tori(step: f32, meshes: &One, dab: Option<(f32, Vec3)>) -> Result<Program, St
                 rotation: Quat::from_rotation_z(angle),
                 scale: Vec3::ONE,
             },
-            recipe: mesh.clone(),
+            recipe: one.clone(),
             muted: false,
         })
         .into();
@@ -151,10 +156,41 @@ fn tori(step: f32, meshes: &One, dab: Option<(f32, Vec3)>) -> Result<Program, St
     Program::compile(&recipe, &Placement::IDENTITY, step, meshes).map_err(|e| e.to_string())
 }
 
+/// A torus about z.
+fn exact() -> Recipe {
+    let torus = Primitive::Torus {
+        major: 0.28,
+        minor: 0.12,
+    };
+    Recipe::new(Node::Solid(vec![Operand {
+        op: Op::Union,
+        placement: Placement {
+            rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            ..Placement::IDENTITY
+        },
+        recipe: torus.into(),
+        muted: false,
+    }]))
+}
+
 fn task(name: &str) -> Result<Recipe, String> {
     let found = TASKS.iter().find(|(n, _)| *n == name);
     let (_, text) = found.ok_or_else(|| format!("there is no task {name}"))?;
     ron::from_str(text).map_err(|e| e.to_string())
+}
+
+/// The two programs of `gpu/dab-32-in-256`.
+#[cfg(test)]
+pub(crate) fn dab() -> (Program, Program) {
+    let work = Work {
+        name: String::new(),
+        kind: Kind::Dab {
+            nodes: 32,
+            within: 256,
+        },
+    };
+    let made = work.made().expect("sound");
+    (made.before.expect("an edit"), made.program)
 }
 
 impl Work {
@@ -175,19 +211,28 @@ impl Work {
             }
             Kind::Tori(n) => Ok(Made {
                 before: None,
-                program: tori(2.0 / (n - 1) as f32, &torus()?, None)?,
+                program: tori(2.0 / (n - 1) as f32, &exact(), &(), None)?,
             }),
+            Kind::Baked(n) => {
+                let mesh = Recipe::new(Node::Mesh {
+                    mesh: MeshHash([0; 32]),
+                    bounds: Aabb::around(Vec3::ZERO, Vec3::splat(0.5)),
+                });
+                Ok(Made {
+                    before: None,
+                    program: tori(2.0 / (n - 1) as f32, &mesh, &torus()?, None)?,
+                })
+            }
             Kind::Dab { nodes, within } => {
                 let step = 2.0 / (within - 1) as f32;
-                let meshes = torus()?;
                 // On the surface of the first torus.
                 let (angle, place) = PLACES[0];
                 let at =
                     Vec3::from(place) + Quat::from_rotation_z(angle) * Vec3::new(0.4, 0.0, 0.0);
                 let radius = 0.5 * nodes as f32 * step;
                 Ok(Made {
-                    before: Some(tori(step, &meshes, None)?),
-                    program: tori(step, &meshes, Some((radius, at)))?,
+                    before: Some(tori(step, &exact(), &(), None)?),
+                    program: tori(step, &exact(), &(), Some((radius, at)))?,
                 })
             }
         }

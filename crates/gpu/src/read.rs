@@ -242,7 +242,7 @@ impl GpuSolid {
 fn sane(v: f32, far: f32) -> f32 {
     if v.abs() <= f32::MAX / 4.0 {
         v
-    } else if v < 0.0 && v >= f32::MIN {
+    } else if (f32::MIN..0.0).contains(&v) {
         -far
     } else {
         far

@@ -584,7 +584,7 @@ fn guess(program: &Program, flat: &Flat, options: SolidOptions) -> Result<Room, 
     if !region.is_empty() {
         let reach = region.min.abs().max(region.max.abs()).max_element();
         // Beyond this, single precision cannot tell neighbouring nodes apart.
-        if !(reach / step <= 4.0e6) {
+        if reach / step > 4.0e6 || reach.is_nan() {
             return Err(GpuError::TooFine(step));
         }
         let (low, high) = bricks_touching(&region, step);
