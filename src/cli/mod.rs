@@ -14,6 +14,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use midair_document::{Document, MeshStore};
+use midair_studio::evaluate::Choice;
 
 /// A studio for making 3D models with your hands in the air.
 #[derive(Parser, Debug)]
@@ -33,6 +34,9 @@ pub struct Window {
     /// Use the headset (OpenXR, SteamVR)
     #[arg(long)]
     vr: bool,
+    /// Where solids are made [default: as the settings say: the graphics card where there is a real one]
+    #[arg(long)]
+    backend: Option<Backend>,
     /// Record the hands to a session file
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -98,6 +102,9 @@ pub struct Play {
     /// Draw every frame, small, and report what that costs: extraction, and the render world's processor time
     #[arg(long, requires = "report")]
     drawn: bool,
+    /// Where solids are made; the processor gives the same bytes every time
+    #[arg(long, default_value = "cpu")]
+    backend: Backend,
     /// Start from this document instead of an empty one
     #[arg(long, value_name = "FILE")]
     open: Option<PathBuf>,
@@ -177,6 +184,16 @@ pub enum Backend {
     Cpu,
     /// On the graphics card
     Gpu,
+}
+
+impl Backend {
+    /// The same, not to be changed by a setting.
+    fn forced(self) -> midair_studio::evaluate::Backend {
+        midair_studio::evaluate::Backend::forced(match self {
+            Self::Cpu => Choice::Processor,
+            Self::Gpu => Choice::Card,
+        })
+    }
 }
 
 /// Steps from a tenth of a millimetre to a metre: smaller ones fill the memory, larger ones show nothing.

@@ -43,6 +43,7 @@ pub(super) fn run(args: Play) -> Result<()> {
         journal: false,
     };
     let mut app = app(stage, Places::of_user()?, begin);
+    app.world_mut().resource_mut::<Evaluations>().backend = args.backend.forced();
     app.add_plugins(PlayerPlugin);
     if args.in_headset {
         wear(&mut app);

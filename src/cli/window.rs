@@ -6,6 +6,7 @@ use midair_document::{Document, MeshStore, Object};
 use midair_openxr::{Headset, Life};
 use midair_playback::{RecorderPlugin, Session, Step};
 use midair_studio::command::Command;
+use midair_studio::evaluate::{self, Choice, Evaluations};
 use midair_studio::notice::Notices;
 use midair_studio::project::{Begin, Places};
 
@@ -47,6 +48,10 @@ pub(super) fn run(args: Window) -> Result<()> {
             app
         }
         None => app(Stage::Window, places, start),
+    };
+    app.world_mut().resource_mut::<Evaluations>().backend = match args.backend {
+        Some(backend) => backend.forced(),
+        None => evaluate::Backend::following(Choice::Auto),
     };
     let again = Again::keeping(match &args.rehearse {
         Some(folder) => vec!["--rehearse".into(), folder.into()],

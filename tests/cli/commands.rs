@@ -49,7 +49,10 @@ fn what_this_machine_cannot_do_is_said_in_one_line() {
     place.refused(&["--vr"], &["no headset", "flat screen"]);
     place.refused(&[], &["display"]);
     place.refused(&["a.midair"], &["a.midair"]);
-    place.refused(&["bench", "--backend", "gpu"], &["GPU", "cpu"]);
+    place.refused(
+        &["bench", "--backend", "gpu", "csg/teapot"],
+        &["csg/teapot", "gpu/chair"],
+    );
     place.refused(&["bench", "csg/teapot"], &["csg/teapot", "csg/cup"]);
 }
 

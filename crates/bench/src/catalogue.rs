@@ -25,6 +25,9 @@ pub enum BenchError {
     /// A mesh could not be baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
+    /// The graphics card refused it.
+    #[error("{0}")]
+    Card(String),
     /// A mesh could not be read.
     #[error(transparent)]
     Mesh(#[from] ReadError),
@@ -81,6 +84,11 @@ impl Workload {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What the paper gives for it, milliseconds.
+    pub(crate) fn paper(&self) -> Option<f64> {
+        self.paper
     }
 
     /// Carries it out, on as many threads as the current rayon pool has.

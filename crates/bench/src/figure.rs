@@ -13,7 +13,7 @@ pub type Details = Map<String, Value>;
 pub struct Figure {
     /// Which workload.
     pub name: String,
-    /// Where the work was done: `cpu`.
+    /// Where the work was done: `cpu` or `gpu`.
     pub backend: &'static str,
     /// What the numbers count: `ms`.
     pub unit: &'static str,

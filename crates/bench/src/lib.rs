@@ -8,6 +8,7 @@
 //! - `figure`: what comes out, as JSON and as a table.
 //! - `report`: one after the other, a row for each.
 //! - `catalogue`: every workload by name.
+//! - `card`: those that the graphics card does as well.
 //! - `csg`, `surface`, `bake`, `fuse`, `many`, `scaffold`, `sweep`: the work itself.
 //!
 //! ```
@@ -24,6 +25,7 @@
 
 mod bake;
 mod brush;
+mod card;
 mod catalogue;
 mod csg;
 mod figure;
@@ -35,6 +37,7 @@ mod scaffold;
 mod surface;
 mod sweep;
 
+pub use card::{report_on_card, select_on_card};
 pub use catalogue::{BenchError, Outcome, UnknownName, Workload, select, workloads};
 pub use figure::{Details, Figure, Table};
 pub use measure::Budget;

@@ -50,6 +50,8 @@ pub struct Figures {
     pub name: String,
     /// From the call to the counters in main memory; the surface stays on the device.
     pub total_ms: f64,
+    /// The shortest and the longest run of it.
+    pub range_ms: [f64; 2],
     /// The device's own clock: culling, fusing, extracting. `None` where it has none.
     pub device_ms: Option<[f64; 3]>,
     /// The mesh copied to main memory.
@@ -277,6 +279,10 @@ impl Work {
         let device = |k: usize| median(parts.iter().map(|p| p[k]).collect());
         Ok(Figures {
             name: self.name.clone(),
+            range_ms: [
+                total.iter().copied().fold(f64::INFINITY, f64::min),
+                total.iter().copied().fold(0.0, f64::max),
+            ],
             total_ms: median(total),
             device_ms: gpu.is_timed().then(|| [device(0), device(1), device(2)]),
             read_ms: median(read),

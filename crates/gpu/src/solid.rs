@@ -133,7 +133,14 @@ impl GpuSolid {
             && flat.program.len() as u32 <= self.room.program
             && flat.volume_bytes() / 4 <= self.room.volumes.into()
             && flat.flattest >= if self.room.quantised { FLATTEST } else { 0.0 };
-        if chunks > MOST_CHUNKS.min(self.room.blocks.into()) || !fits || self.globals.top < 3 {
+        // Most of it anew is sooner made whole, and leaves nothing of what was there before.
+        let volume = |b: &Aabb| f64::from(b.size().element_product());
+        let much = volume(&dirty) > 0.5 * volume(&program.bounds());
+        if much
+            || chunks > MOST_CHUNKS.min(self.room.blocks.into())
+            || !fits
+            || self.globals.top < 3
+        {
             return self.remake(program, &flat);
         }
         let started = Instant::now();
@@ -152,6 +159,11 @@ impl GpuSolid {
     /// As [`GpuSolid::make`].
     pub fn make_again(&mut self, program: &Program) -> Result<(), GpuError> {
         self.remake(program, &Flat::new(program)?)
+    }
+
+    /// Whether it lives on this device.
+    pub fn is_on(&self, gpu: &Arc<Gpu>) -> bool {
+        Arc::ptr_eq(&self.gpu, gpu)
     }
 
     /// Metres between nodes.

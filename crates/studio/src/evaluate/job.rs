@@ -1,5 +1,5 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
@@ -12,6 +12,7 @@ use midair_library::Volumes;
 use midair_mesh::TriMesh;
 use midair_solid::{Clones, Solid, SolidError, clones, own_mesh};
 
+use super::backend::{Asked, Backend};
 use super::{Key, Update};
 use crate::show::to_bevy_mesh;
 
@@ -156,6 +157,7 @@ impl Running {
         recipe: Recipe,
         base: Option<Arc<Solid>>,
         volumes: Arc<Volumes>,
+        backend: Backend,
     ) -> impl FnOnce() + Send + 'static {
         let step = self.key.step();
         let progress = self.progress.clone();
@@ -188,12 +190,29 @@ impl Running {
                 if let Some(mesh) = own_mesh(&recipe) {
                     return Ok(Made::from_mesh(Arc::new(mesh)));
                 }
+                let mut line = None;
+                // A painting is kept with its field, and changes stroke by stroke: the processor's.
+                if !matches!(recipe.node(), Node::Canvas(_)) {
+                    match backend.make(&recipe, step, &meshes) {
+                        Asked::Made(on_card) => {
+                            if cancelled.load(Ordering::Relaxed) {
+                                return Err(SolidError::Cancelled);
+                            }
+                            let mut made = Made::from_mesh(Arc::new(on_card.mesh));
+                            made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
+                            made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
+                            return Ok(made);
+                        }
+                        Asked::Processor(why) => line = why,
+                    }
+                }
                 let at = Placement::IDENTITY;
                 let solid = match &base {
                     Some(base) => base.remake(&recipe, &at, step, &meshes, &cancelled),
                     None => Solid::make(&recipe, &at, step, &meshes, &cancelled),
                 }?;
                 let mut made = Made::from_mesh(Arc::new(solid.mesh()));
+                made.warnings.extend(line);
                 made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
                 made.extract_ms = solid.extract.as_secs_f64() * 1e3;
                 if matches!(recipe.node(), Node::Canvas(_)) {

@@ -4,6 +4,7 @@
 //! any more is cancelled. Results are keyed by (recipe hash, step) and taken in at one point of the
 //! frame, the start of [`StudioSet::Rebuild`], before new work is started.
 
+mod backend;
 mod delivery;
 mod job;
 mod live;
@@ -19,6 +20,7 @@ use midair_field::{Recipe, RecipeHash};
 use midair_library::Volumes;
 use midair_solid::Solid;
 
+pub use backend::{Backend, Choice};
 pub use delivery::{Deliver, Delivered, Delivery, Job};
 pub use job::Made;
 use job::Running;
@@ -26,7 +28,7 @@ pub(crate) use job::{ONE_BY_ONE, merged};
 pub use live::{Live, Sketch};
 use memory::Memory;
 
-use crate::{StudioSet, notice::Notices};
+use crate::{StudioSet, notice::Notices, settings::Settings};
 
 /// Which solid: a recipe at a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,6 +76,8 @@ pub struct Update {
 pub struct Evaluations {
     /// Baked grids of imported meshes, shared by all evaluations.
     pub volumes: Arc<Volumes>,
+    /// Who makes them: card or processor.
+    pub backend: Backend,
     made: Memory,
     running: Vec<Running>,
     failed: HashMap<Key, String>,
@@ -85,10 +89,11 @@ pub struct Evaluations {
 }
 
 impl Evaluations {
-    /// With nothing made yet.
+    /// With nothing made yet, by the processor unless told otherwise.
     pub fn new(volumes: Arc<Volumes>) -> Self {
         Self {
             volumes,
+            backend: Backend::forced(Choice::Processor),
             made: Memory::default(),
             running: Vec::new(),
             failed: HashMap::default(),
@@ -188,7 +193,7 @@ impl Evaluations {
 
     fn start(&mut self, recipe: Recipe, base: Option<Arc<Solid>>, key: Key) {
         let running = Running::new(key, self.frame);
-        let work = running.work(recipe, base, self.volumes.clone());
+        let work = running.work(recipe, base, self.volumes.clone(), self.backend.clone());
         AsyncComputeTaskPool::get()
             .spawn(async move { work() })
             .detach();
@@ -265,7 +270,14 @@ pub(crate) fn plugin(app: &mut App) {
         .init_resource::<Delivered>()
         // Results are taken in before the entities follow and ask for new ones.
         .configure_sets(Update, Deliver.in_set(StudioSet::Rebuild))
-        .add_systems(Update, deliver.in_set(Deliver));
+        .add_systems(Update, (choose, deliver).chain().in_set(Deliver));
+}
+
+/// The setting reaches whoever makes solids before new ones are asked for.
+fn choose(settings: Option<Res<Settings>>, evaluations: Res<Evaluations>) {
+    if let Some(settings) = settings.filter(|s| s.is_changed()) {
+        evaluations.backend.follow(settings.compute.backend);
+    }
 }
 
 fn deliver(

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::{Panel, icon};
 use crate::command::Command;
+use crate::evaluate::Evaluations;
 use crate::settings::Settings;
 
 /// Parts that are remembered rather than set.
@@ -15,7 +16,8 @@ const REMEMBERED: [&str; 3] = ["help", "files", "palettes"];
 const FIRST: [&str; 4] = ["look", "hands", "units", "snap"];
 
 /// What one chooses from.
-const CHOICES: [(&str, &[&str]); 4] = [
+const CHOICES: [(&str, &[&str]); 5] = [
+    ("compute.backend", &["Auto", "Card", "Processor"]),
     ("comfort.desktop", &["Mirror", "Spectator"]),
     ("look.room", &["Dusk", "Day", "Paper"]),
     ("units.length", &["mm", "cm", "m", "inch"]),
@@ -82,6 +84,11 @@ impl Panel for SettingsPanel {
                 continue;
             }
             self.rows(ui, part, value, &query, asks);
+            if part == "compute"
+                && let Some(evaluations) = world.get_resource::<Evaluations>()
+            {
+                ui.weak(evaluations.backend.says());
+            }
             if query.is_empty() {
                 ui.add_space(8.0);
                 self.foot(ui, part, value, &usual, asks);
@@ -208,6 +215,7 @@ fn label(key: &str) -> String {
     match key {
         "look.interface_scale" => "Size of panels and text".to_owned(),
         "look.motion" => "Things ease into their places".to_owned(),
+        "compute.backend" => "Solids are made by".to_owned(),
         "comfort.interface_scale" => "Size of panels in a headset".to_owned(),
         "comfort.pointer_angle" => "Wands point down by (degrees)".to_owned(),
         "comfort.haptics" => "Strength of pulses".to_owned(),

@@ -6,6 +6,7 @@
 
 mod brush;
 mod comfort;
+mod compute;
 mod files;
 mod hands;
 mod help;
@@ -27,6 +28,7 @@ use serde::{Deserialize, Serialize};
 
 pub use brush::{BrushSettings, BrushSkeleton};
 pub use comfort::{ComfortSettings, Desktop};
+pub use compute::{Backend, ComputeSettings};
 pub use files::FileSettings;
 pub use hands::HandsSettings;
 pub use help::{HelpSettings, Lesson, Progress};
@@ -71,6 +73,8 @@ pub struct Settings {
     pub world: WorldSettings,
     /// What one wants in a headset.
     pub comfort: ComfortSettings,
+    /// Where solids are made.
+    pub compute: ComputeSettings,
     /// How what is drawn is read.
     pub scaffold: ScaffoldSettings,
     /// How far one is with learning.
