@@ -15,7 +15,7 @@ const TAPE: &str = include_str!("../shaders/tape.wgsl");
 const RANGES: &str = include_str!("../shaders/ranges.wgsl");
 
 /// Every module by name.
-pub(crate) const SOURCES: [Source; 5] = [
+pub(crate) const SOURCES: [Source; 6] = [
     Source {
         name: "cull.wgsl",
         files: &[COMMON, SHAPE, TAPE, include_str!("../shaders/cull.wgsl")],
@@ -35,6 +35,10 @@ pub(crate) const SOURCES: [Source; 5] = [
     Source {
         name: "compact.wgsl",
         files: &[COMMON, include_str!("../shaders/compact.wgsl")],
+    },
+    Source {
+        name: "voxels.wgsl",
+        files: &[COMMON, include_str!("../shaders/voxels.wgsl")],
     },
 ];
 
@@ -59,6 +63,8 @@ pub(crate) mod binding {
     pub const TIGHT_VERTICES: u32 = 16;
     pub const TIGHT_INDICES: u32 = 17;
     pub const RENUMBERED: u32 = 18;
+    pub const CORNERS: u32 = 19;
+    pub const VOXELS: u32 = 20;
 }
 
 /// A pass ready to run.
@@ -85,6 +91,9 @@ pub(crate) struct Kernels {
     pub scan_sums: Kernel,
     pub compact_vertices: Kernel,
     pub compact_triangles: Kernel,
+    pub shell: Kernel,
+    pub fill: Kernel,
+    pub smoothed: Kernel,
 }
 
 impl Kernels {
@@ -174,6 +183,13 @@ impl Kernels {
                     TIGHT_INDICES,
                     RENUMBERED,
                 ],
+            )?,
+            shell: make(5, "shell", &[GLOBALS, CORNERS, VOXELS])?,
+            fill: make(5, "fill", &[GLOBALS, VOXELS])?,
+            smoothed: make(
+                5,
+                "smoothed",
+                &[GLOBALS, COUNTERS, PAGES, VALUES, BRICKS, VOXELS],
             )?,
         })
     }

@@ -27,6 +27,7 @@
 //! - `memory`: buffers within a budget.
 //! - `solid`: making and updating; `passes`: what is run for it, in which order.
 //! - [`measure`]: workloads that are timed.
+//! - `voxels`: a mesh as a volume brush.
 //! - `read`: meshes and fields back in main memory.
 
 mod device;
@@ -39,6 +40,7 @@ mod memory;
 mod passes;
 mod read;
 mod solid;
+mod voxels;
 mod wait;
 
 pub use device::{Adapter, Gpu, GpuOptions};

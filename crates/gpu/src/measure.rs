@@ -1,16 +1,17 @@
 //! Workloads of the GPU: what `midair bench` and the small program `measure` time.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use glam::{Quat, Vec3};
-use midair_field::bake::Volume;
+use midair_field::bake::{BakeOptions, Progress, Volume, bake};
 use midair_field::{
     FuseOptions, MeshSource, Node, Op, Operand, Placement, Primitive, Program, Recipe, changed_box,
     fuse, refuse,
 };
-use midair_mesh::{Aabb, MeshHash};
+use midair_mesh::{Aabb, MeshHash, TriMesh};
 use midair_surface::Surface;
 
 use crate::{Gpu, GpuError, GpuSolid, SolidOptions};
@@ -33,12 +34,14 @@ pub struct Work {
 enum Kind {
     /// A recipe at a step.
     Task(&'static str, f32),
-    /// Five tori in a lattice of so many nodes, a side of two metres.
-    Tori(u32),
-    /// The same, baked to 64³ nodes each.
+    /// 4³ tori that fill a lattice of so many nodes, a side of two metres.
+    Full(u32),
+    /// Five baked tori of 64³ nodes each in such a lattice.
     Baked(u32),
-    /// The same, a ball of so many nodes across moved on its surface.
+    /// 4³ tori as above, a ball of so many nodes across set on the surface of one.
     Dab { nodes: u32, within: u32 },
+    /// A mesh of 25,000 triangles as a volume brush, at so many nodes along its longest side.
+    Brush(u32),
     /// The chair at so many nodes along its longest side.
     Growth(u32),
 }
@@ -52,11 +55,11 @@ pub struct Figures {
     pub total_ms: f64,
     /// The shortest and the longest run of it.
     pub range_ms: [f64; 2],
-    /// The device's own clock: culling, fusing, extracting. `None` where it has none.
+    /// The device's own clock: culling, fusing, extracting; of a brush voxels, smoothing, extracting. `None` where it has none.
     pub device_ms: Option<[f64; 3]>,
     /// The mesh copied to main memory.
     pub read_ms: f64,
-    /// The same work by the processor.
+    /// The same work by the processor; for a brush, baking it.
     pub processor_ms: f64,
     /// Triangles.
     pub triangles: u32,
@@ -100,11 +103,14 @@ pub fn all() -> Vec<Work> {
         }
     }
     let mut add = |name: String, kind| all.push(Work { name, kind });
-    add("gpu/full-256".into(), Kind::Tori(256));
+    add("gpu/full-256".into(), Kind::Full(256));
     add("gpu/baked-256".into(), Kind::Baked(256));
     let dab = |nodes, within| Kind::Dab { nodes, within };
     add("gpu/dab-32-in-256".into(), dab(32, 256));
     add("gpu/dab-in-512".into(), dab(32, 512));
+    for n in [128, 256] {
+        add(format!("gpu/brush-25k/{n}"), Kind::Brush(n));
+    }
     for n in [128, 256, 512, 1024] {
         add(format!("gpu/memory/chair-{n}"), Kind::Growth(n));
     }
@@ -127,26 +133,49 @@ fn torus() -> Result<One, String> {
     Ok(One(Arc::new(volume)))
 }
 
-/// Where each of the tori has the z axis for its own.
-fn tori(
-    step: f32,
-    one: &Recipe,
-    meshes: &dyn MeshSource,
-    dab: Option<(f32, Vec3)>,
-) -> Result<Program, String> {
-    let mut operands: Vec<Operand> = PLACES
-        .map(|(angle, place)| Operand {
+/// Five baked tori.
+fn baked(step: f32) -> Result<Program, String> {
+    let mesh = Recipe::new(Node::Mesh {
+        mesh: MeshHash([0; 32]),
+        bounds: Aabb::around(Vec3::ZERO, Vec3::splat(0.5)),
+    });
+    let operands = PLACES.map(|(angle, place)| Operand {
+        op: Op::Union,
+        placement: Placement {
+            translation: Vec3::from(place) + 0.5 * step,
+            rotation: Quat::from_rotation_z(angle),
+            scale: Vec3::ONE,
+        },
+        recipe: mesh.clone(),
+        muted: false,
+    });
+    let recipe = Recipe::new(Node::Solid(operands.to_vec()));
+    Program::compile(&recipe, &Placement::IDENTITY, step, &torus()?).map_err(|e| e.to_string())
+}
+
+/// 4³ tori, turned this way and that, and perhaps a ball on the surface of the first.
+fn full(step: f32, dab: Option<f32>) -> Result<Program, String> {
+    let torus = Recipe::from(Primitive::Torus {
+        major: 0.15,
+        minor: 0.075,
+    });
+    let mut operands = Vec::new();
+    for i in 0..64 {
+        let cell = Vec3::new((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
+        operands.push(Operand {
             op: Op::Union,
             placement: Placement {
-                translation: Vec3::from(place) + 0.5 * step,
-                rotation: Quat::from_rotation_z(angle),
+                translation: 0.48 * (cell - 1.5),
+                rotation: Quat::from_scaled_axis(Vec3::new(0.7, 0.3, 1.1) * i as f32),
                 scale: Vec3::ONE,
             },
-            recipe: one.clone(),
+            recipe: torus.clone(),
             muted: false,
-        })
-        .into();
-    if let Some((radius, at)) = dab {
+        });
+    }
+    if let Some(radius) = dab {
+        // The first stands unturned, about y.
+        let at = 0.48 * Vec3::splat(-1.5) + Vec3::new(0.15, 0.075, 0.0);
         operands.push(Operand {
             op: Op::Union,
             placement: Placement::at(at),
@@ -155,24 +184,26 @@ fn tori(
         });
     }
     let recipe = Recipe::new(Node::Solid(operands));
-    Program::compile(&recipe, &Placement::IDENTITY, step, meshes).map_err(|e| e.to_string())
+    Program::compile(&recipe, &Placement::IDENTITY, step, &()).map_err(|e| e.to_string())
 }
 
-/// A torus about z.
-fn exact() -> Recipe {
-    let torus = Primitive::Torus {
-        major: 0.28,
-        minor: 0.12,
-    };
-    Recipe::new(Node::Solid(vec![Operand {
-        op: Op::Union,
-        placement: Placement {
-            rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
-            ..Placement::IDENTITY
-        },
-        recipe: torus.into(),
-        muted: false,
-    }]))
+/// A torus of 25,000 triangles about y, 0.5 m across.
+fn brush() -> TriMesh {
+    let (n, m) = (125u32, 100u32);
+    let mut mesh = TriMesh::default();
+    for i in 0..n {
+        for j in 0..m {
+            let (u, v) = (i as f32 / n as f32 * TAU, j as f32 / m as f32 * TAU);
+            let r = 0.17 + 0.08 * v.cos();
+            mesh.positions
+                .push(Vec3::new(r * u.cos(), 0.08 * v.sin(), r * u.sin()));
+            let at = |i: u32, j: u32| i % n * m + j % m;
+            mesh.triangles.push([at(i, j), at(i, j + 1), at(i + 1, j)]);
+            mesh.triangles
+                .push([at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]);
+        }
+    }
+    mesh
 }
 
 fn task(name: &str) -> Result<Recipe, String> {
@@ -181,18 +212,12 @@ fn task(name: &str) -> Result<Recipe, String> {
     ron::from_str(text).map_err(|e| e.to_string())
 }
 
-/// The two programs of `gpu/dab-32-in-256`.
+/// A dab of 16³ nodes in 128³: before, after.
 #[cfg(test)]
 pub(crate) fn dab() -> (Program, Program) {
-    let work = Work {
-        name: String::new(),
-        kind: Kind::Dab {
-            nodes: 32,
-            within: 256,
-        },
-    };
-    let made = work.made().expect("sound");
-    (made.before.expect("an edit"), made.program)
+    let step = 2.0 / 127.0;
+    let made = |dab| full(step, dab).expect("sound");
+    (made(None), made(Some(8.0 * step)))
 }
 
 impl Work {
@@ -211,32 +236,78 @@ impl Work {
                 let side = chair.bounds().size().max_element();
                 whole(&chair, side / (n - 1) as f32)
             }
-            Kind::Tori(n) => Ok(Made {
+            Kind::Full(n) => Ok(Made {
                 before: None,
-                program: tori(2.0 / (n - 1) as f32, &exact(), &(), None)?,
+                program: full(2.0 / (n - 1) as f32, None)?,
             }),
-            Kind::Baked(n) => {
-                let mesh = Recipe::new(Node::Mesh {
-                    mesh: MeshHash([0; 32]),
-                    bounds: Aabb::around(Vec3::ZERO, Vec3::splat(0.5)),
-                });
-                Ok(Made {
-                    before: None,
-                    program: tori(2.0 / (n - 1) as f32, &mesh, &torus()?, None)?,
-                })
-            }
+            Kind::Baked(n) => Ok(Made {
+                before: None,
+                program: baked(2.0 / (n - 1) as f32)?,
+            }),
             Kind::Dab { nodes, within } => {
                 let step = 2.0 / (within - 1) as f32;
-                // On the surface of the first torus.
-                let (angle, place) = PLACES[0];
-                let at =
-                    Vec3::from(place) + Quat::from_rotation_z(angle) * Vec3::new(0.4, 0.0, 0.0);
-                let radius = 0.5 * nodes as f32 * step;
                 Ok(Made {
-                    before: Some(tori(step, &exact(), &(), None)?),
-                    program: tori(step, &exact(), &(), Some((radius, at)))?,
+                    before: Some(full(step, None)?),
+                    program: full(step, Some(0.5 * nodes as f32 * step))?,
                 })
             }
+            Kind::Brush(_) => Err("a brush is no recipe".to_owned()),
+        }
+    }
+
+    /// Voxels, smoothing and surface of a mesh (3DBrushVR Table 2).
+    fn run_brush(&self, gpu: &Arc<Gpu>, n: u32, runs: usize) -> Result<Figures, String> {
+        let mesh = brush();
+        let step = mesh.bounds().size().max_element() / (n - 1) as f32;
+        let said = |e: GpuError| e.to_string();
+        let (mut total, mut read, mut parts, mut processor) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut last = None;
+        for run in 0..=runs {
+            let solid = GpuSolid::from_mesh(gpu, &mesh, step).map_err(said)?;
+            let started = Instant::now();
+            solid.mesh().map_err(said)?;
+            let taken = ms(started.elapsed());
+            let started = Instant::now();
+            let options = BakeOptions::with_step(step);
+            bake(&mesh, &options, &Progress::new()).map_err(|e| e.to_string())?;
+            if run > 0 {
+                processor.push(ms(started.elapsed()));
+                read.push(taken);
+                let t = solid.timing();
+                total.push(ms(t.total));
+                parts.push([t.cull, t.fuse, t.extract].map(|p| p.map_or(f64::NAN, ms)));
+            }
+            last = Some(solid);
+        }
+        let solid = last.ok_or("no run")?;
+        Ok(self.figures(gpu, &solid, total, read, &parts, median(processor)))
+    }
+
+    fn figures(
+        &self,
+        gpu: &Gpu,
+        solid: &GpuSolid,
+        total: Vec<f64>,
+        read: Vec<f64>,
+        parts: &[[f64; 3]],
+        processor_ms: f64,
+    ) -> Figures {
+        let memory = solid.memory();
+        let device = |k: usize| median(parts.iter().map(|p| p[k]).collect());
+        Figures {
+            name: self.name.clone(),
+            range_ms: [
+                total.iter().copied().fold(f64::INFINITY, f64::min),
+                total.iter().copied().fold(0.0, f64::max),
+            ],
+            total_ms: median(total),
+            device_ms: gpu.is_timed().then(|| [device(0), device(1), device(2)]),
+            read_ms: median(read),
+            processor_ms,
+            triangles: solid.size().0,
+            bricks: memory.bricks,
+            bytes: [memory.used, memory.reserved],
         }
     }
 
@@ -250,6 +321,9 @@ impl Work {
         options: SolidOptions,
         runs: usize,
     ) -> Result<Figures, String> {
+        if let Kind::Brush(n) = self.kind {
+            return self.run_brush(gpu, n, runs);
+        }
         let Made { before, program } = self.made()?;
         let said = |e: GpuError| e.to_string();
         let mut solid =
@@ -275,22 +349,8 @@ impl Work {
                 parts.push(device.map(|p| p.map_or(f64::NAN, ms)));
             }
         }
-        let memory = solid.memory();
-        let device = |k: usize| median(parts.iter().map(|p| p[k]).collect());
-        Ok(Figures {
-            name: self.name.clone(),
-            range_ms: [
-                total.iter().copied().fold(f64::INFINITY, f64::min),
-                total.iter().copied().fold(0.0, f64::max),
-            ],
-            total_ms: median(total),
-            device_ms: gpu.is_timed().then(|| [device(0), device(1), device(2)]),
-            read_ms: median(read),
-            processor_ms: on_processor(before.as_ref(), &program, runs)?,
-            triangles: solid.size().0,
-            bricks: memory.bricks,
-            bytes: [memory.used, memory.reserved],
-        })
+        let processor = on_processor(before.as_ref(), &program, runs)?;
+        Ok(self.figures(gpu, &solid, total, read, &parts, processor))
     }
 }
 

@@ -56,7 +56,7 @@ pub struct GpuSolid {
     pub(crate) counters: [u32; counter::COUNT],
     /// The meshes that `buffers.volumes` holds.
     meshes: Vec<Arc<midair_field::bake::Volume>>,
-    timing: Timing,
+    pub(crate) timing: Timing,
 }
 
 /// An edit over more chunks than this is a making.
@@ -409,7 +409,7 @@ impl GpuSolid {
         Ok(self.counters[counter::OVERFLOW] == 0)
     }
 
-    fn times(&self) -> Option<wgpu::QuerySet> {
+    pub(crate) fn times(&self) -> Option<wgpu::QuerySet> {
         self.gpu.tick.map(|_| {
             self.gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: None,

@@ -3,3 +3,4 @@ mod growth;
 mod reference;
 mod shaders;
 mod support;
+mod voxels;
