@@ -1,38 +1,77 @@
-//! The graphics card goes away while one works: drawing begins anew, and the work is kept.
+//! The graphics card goes away while one works: the app starts itself again, with the work as it stands.
+//!
+//! The engine can take up another card in place, but the ground grid and the panels keep buffers of the one that is gone
+//! and nothing outside of them can take these away; so drawing begins anew with the whole app. Everything that was done is
+//! in the journal before the next frame, so the window comes back with it, its undo list included.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use bevy::app::AppExit;
 use bevy::prelude::*;
 use bevy::render::error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy};
 use bevy::render::renderer::RenderDevice;
-use bevy::render::settings::RenderCreation;
 use bevy::render::{Render, RenderApp, RenderSystems};
 use midair_studio::notice::Notices;
+use midair_studio::project::Project;
 
-/// So often is drawing begun anew within [`WHILE`] seconds before it is given up.
-const TRIES: usize = 3;
-const WHILE: f64 = 60.0;
+use crate::start_again;
 
-/// When the card went away, in seconds since the start.
-#[derive(Resource, Default)]
-struct Losses(Vec<f64>);
+/// A card that goes away once more within this time is not worth a third start.
+const SOON: Duration = Duration::from_secs(60);
 
-/// Goes on after the card was lost; closes the window with one line where that does not help.
-pub(crate) fn watch(app: &mut App) {
-    app.init_resource::<Losses>()
-        .insert_resource(RenderErrorHandler(answer));
+/// What a start after a loss needs to know. Not a resource: a panic in the middle of a frame can ask no world.
+struct Kept {
+    /// Arguments that stay as they are.
+    arguments: Vec<OsString>,
+    /// Where the work is: to be taken up from the journal, or in a file.
+    work: Work,
+    /// When the card was lost before, in seconds since 1970.
+    before: Option<u64>,
+}
+
+enum Work {
+    Journal,
+    File(PathBuf),
+    None,
+}
+
+static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+
+/// From here on a lost card starts the app again, with `arguments` beside the work. `before` is when that
+/// happened the last time, in seconds since 1970.
+pub(crate) fn watch(app: &mut App, arguments: Vec<OsString>, before: Option<u64>) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Kept {
+        arguments,
+        work: Work::None,
+        before,
+    });
+    if before.is_some() {
+        app.world_mut().resource_mut::<Notices>().warn(
+            "The graphics card was lost, so the window was opened anew. Your work is as it was. \
+             If it happens again, look for a newer driver.",
+        );
+    }
+    app.insert_resource(RenderErrorHandler(answer))
+        .add_systems(Last, keep.run_if(resource_changed::<Project>));
+}
+
+fn keep(project: Res<Project>) {
+    let work = match project.path() {
+        _ if project.history().is_unsaved() => Work::Journal,
+        Some(path) => Work::File(path.to_owned()),
+        None => Work::None,
+    };
+    if let Some(kept) = KEPT.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+        kept.work = work;
+    }
 }
 
 fn answer(error: &RenderError, main: &mut World, _: &mut World) -> RenderErrorPolicy {
-    let now = main.resource::<Time<Real>>().elapsed_secs_f64();
-    let mut losses = main.get_resource_or_init::<Losses>();
-    losses.0.retain(|at| now - at < WHILE);
-    if matches!(error.ty, ErrorType::DeviceLost) && losses.0.len() < TRIES {
-        losses.0.push(now);
-        main.resource_mut::<Notices>().warn(
-            "The graphics card was lost, so drawing begins anew. Your work is kept. \
-             If it happens again, save, and look for a newer driver.",
-        );
-        return RenderErrorPolicy::Recover(RenderCreation::default());
+    if matches!(error.ty, ErrorType::DeviceLost) {
+        lost();
     }
     eprintln!(
         "midair: the graphics card stopped drawing ({:?}), so the window closes. Your work is kept: \
@@ -41,6 +80,43 @@ fn answer(error: &RenderError, main: &mut World, _: &mut World) -> RenderErrorPo
     );
     main.write_message(AppExit::error());
     RenderErrorPolicy::StopRendering
+}
+
+/// The card is lost: starts the app again, or says in one line why not. Does not come back.
+pub(crate) fn lost() -> ! {
+    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let Some(kept) = kept else {
+        // Another thread has noticed first: it ends the program.
+        loop {
+            std::thread::sleep(SOON);
+        }
+    };
+    let now = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .unwrap_or_default();
+    let since = kept
+        .before
+        .map(|b| now.saturating_sub(Duration::from_secs(b)));
+    if since.is_none_or(|since| since > SOON) {
+        eprintln!(
+            "midair: the graphics card was lost, so the window opens anew with your work as it is"
+        );
+        let mut arguments = kept.arguments;
+        match kept.work {
+            Work::Journal => arguments.push("--resume".into()),
+            Work::File(path) => arguments.push(path.into()),
+            Work::None => {}
+        }
+        arguments.push(format!("--card-lost={}", now.as_secs()).into());
+        if start_again(&arguments).is_ok() {
+            std::process::exit(0);
+        }
+    }
+    eprintln!(
+        "midair: the graphics card was lost again, so the window closes. Your work is kept: start Midair again \
+         and press Restore it"
+    );
+    std::process::exit(1);
 }
 
 /// Takes the card away after so many frames, as a test.

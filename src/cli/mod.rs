@@ -58,6 +58,9 @@ pub struct Window {
     /// Lose the graphics card after so many frames, to see that the window goes on
     #[arg(long, value_name = "FRAMES", hide = true)]
     lose_card: Option<u32>,
+    /// When the graphics card was lost, in seconds since 1970, where that is why the app was started again
+    #[arg(long, value_name = "SECONDS", hide = true)]
+    card_lost: Option<u64>,
 }
 
 #[derive(Subcommand, Debug)]

@@ -53,10 +53,11 @@ pub(super) fn run(args: Window) -> Result<()> {
         Some(backend) => backend.forced(),
         None => evaluate::Backend::following(Choice::Auto),
     };
-    let again = Again::keeping(match &args.rehearse {
+    let kept = match &args.rehearse {
         Some(folder) => vec!["--rehearse".into(), folder.into()],
         None => Vec::new(),
-    });
+    };
+    let again = Again::keeping(kept.clone());
     if !app.world().contains_resource::<Life>() {
         app.add_plugins(SwitchPlugin(again.clone()));
     }
@@ -66,7 +67,11 @@ pub(super) fn run(args: Window) -> Result<()> {
     if let Some(folder) = args.rehearse {
         app.add_plugins(RehearsalPlugin(folder));
     }
-    device::watch(&mut app);
+    let mut after_a_loss = kept;
+    if args.vr {
+        after_a_loss.push("--vr".into());
+    }
+    device::watch(&mut app, after_a_loss, args.card_lost);
     if let Some(frames) = args.lose_card {
         device::lose_after(&mut app, frames);
     }
@@ -107,13 +112,8 @@ fn say_when_nothing_draws() {
             );
             std::process::exit(1);
         }
-        // Drawing cannot begin anew from within a frame; the journal has every step.
         if device::is_loss(said) {
-            eprintln!(
-                "midair: the graphics card was lost in the middle of a frame, so the window closes. Your work \
-                 is kept: start Midair again and press Restore it"
-            );
-            std::process::exit(1);
+            device::lost();
         }
         usual(panic);
     }));

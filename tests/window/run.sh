@@ -53,12 +53,24 @@ DISPLAY=:$(cat "$home/display")
 export DISPLAY
 unset WAYLAND_DISPLAY
 
-# A card that is lost: one clear line, and what was done is offered at the next start.
+# A card that is lost: the window opens anew with the work, its undo list included; lost once more within a minute it
+# is one line and status 1, and the next start offers the work.
+mkdir "$home/talk"
+"$midair" --rehearse "$home/talk" --lose-card 90 >/dev/null 2>"$home/lost" &
+app=$!
+until_true 60 "a window that will lose its card" test -s "$home/talk/said.jsonl"
+echo 'Place(component: "solid/cube", side: Right)' >"$home/talk/asks.ron"
+until_true 60 "a lost graphics card opens the window anew" grep -q "opens anew" "$home/lost"
+stands() { tail -n 1 "$home/talk/said.jsonl" | grep -q '"objects":1.*"undo":1'; }
+until_true 60 "the work is there again, and can be undone" stands
+! grep -q panicked "$home/lost" && [ "$(grep -c '^midair:' "$home/lost")" -eq 1 ] || fail "a lost card: $(cat "$home/lost")"
+kill "$app"; wait "$app" 2>/dev/null || true; app=""
+rm -rf "$MIDAIR_HOME"
 status=0
-timeout 90 "$midair" --lose-card 40 >/dev/null 2>"$home/none" || status=$?
+timeout 90 "$midair" --lose-card 40 --card-lost "$(date +%s)" >/dev/null 2>"$home/none" || status=$?
 [ $status -eq 1 ] && [ "$(grep -c '^midair: the graphics card' "$home/none")" -eq 1 ] &&
-  ! grep -q panicked "$home/none" || fail "a lost card: $status, $(cat "$home/none")"
-pass "a lost graphics card is one line and status 1"
+  ! grep -q panicked "$home/none" || fail "a card lost again: $status, $(cat "$home/none")"
+pass "a card that is lost again is one line and status 1"
 
 # Without anything that draws: one clear line, status 1.
 status=0
