@@ -73,8 +73,8 @@ impl Relation {
         match self {
             Self::Meets => "●",
             Self::Touches => "○",
-            Self::Square => "⊥",
-            Self::Parallel => "∥",
+            Self::Square => "⟂",
+            Self::Parallel => "‖",
             Self::Equal => "=",
             Self::Angle => "∠",
         }

@@ -109,7 +109,7 @@ pub fn export(
         if !wanted {
             continue;
         }
-        if let Some(curve) = curve_of(object, format) {
+        if let Some(curve) = curve_of(object, format, up) {
             let looks = finish(object, &options.materials);
             curves.push(Named::new(object.name.clone(), curve).finished(Some(looks)));
         } else {
@@ -135,17 +135,23 @@ pub fn export(
 }
 
 /// What is written as a line: construction lines, and strokes where they are not tubes.
-fn curve_of(object: &Object, format: Format) -> Option<Curve> {
+fn curve_of(object: &Object, format: Format, up: Up) -> Option<Curve> {
     let (points, closed) = match &object.kind {
         Kind::Line(line) => (line.ends().to_vec(), false),
         Kind::Stroke(stroke) if format == Format::Obj => (stroke.points(), stroke.closed),
         _ => return None,
     };
     let there = affine(&object.placement);
-    let points: Vec<_> = points
+    let positions = points
         .iter()
         .map(|&p| there.transform_point3(p).as_vec3())
         .collect();
+    // Turned as the meshes beside them are.
+    let points = TriMesh {
+        positions,
+        ..TriMesh::default()
+    };
+    let points = points.standing(up).positions;
     // The first point of a closed one is its last: the element says so instead.
     let count = points.len() - usize::from(closed && points.len() > 3);
     Some(Curve {
@@ -198,5 +204,22 @@ fn object_mesh(
             }),
         // A picture to work from is no part of the work.
         Kind::Reference(_) => Ok(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+    use midair_document::ConstructionLine;
+
+    use super::*;
+
+    #[test]
+    fn lines_are_turned_as_the_meshes_beside_them() {
+        let (a, b) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.0, 1.0, 0.0));
+        let line = Object::new("line", Kind::Line(ConstructionLine::raw(a, b)));
+        let points = |up| curve_of(&line, Format::Obj, up).unwrap().points;
+        assert_eq!(points(Up::Y), [a.as_vec3(), b.as_vec3()]);
+        assert_eq!(points(Up::Z), [Vec3::new(0.1, -0.3, 0.2), Vec3::Z]);
     }
 }
