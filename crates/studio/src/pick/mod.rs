@@ -166,7 +166,7 @@ fn follow(
     (project, drafts): (Res<Project>, Res<Drafts>),
     objects: Query<(&ObjectEntity, &Transform, &Visibility), Without<Proxy>>,
     moved: Query<
-        (),
+        &ObjectEntity,
         (
             With<ObjectEntity>,
             Without<Proxy>,
@@ -176,7 +176,7 @@ fn follow(
     fresh: Query<(), Added<Proxy>>,
     mut gone: RemovedComponents<Proxy>,
     mut physics: Query<&mut RapierConfiguration>,
-    mut awake: Local<u8>,
+    (mut awake, mut held): (Local<u8>, Local<Vec<ObjectId>>),
     mut proxies: Query<(&Proxy, &mut Transform, Has<ColliderDisabled>, Entity)>,
     map: Res<crate::show::ObjectMap>,
     mut commands: Commands,
@@ -194,7 +194,16 @@ fn follow(
     if !changed {
         return;
     }
+    // While hands move, and nothing else does, only what they hold is looked at.
+    let all = project.is_changed() || !fresh.is_empty();
+    let mut few = std::mem::replace(&mut *held, drafts.iter().map(|(id, _)| id).collect());
+    few.extend(held.iter().copied().chain(moved.iter().map(|o| o.0)));
+    few.sort_unstable();
+    few.dedup();
     for (proxy, mut transform, disabled, entity) in &mut proxies {
+        if !all && few.binary_search(&proxy.object).is_err() {
+            continue;
+        }
         let Some((_, shown, visibility)) = map.get(proxy.object).and_then(|e| objects.get(e).ok())
         else {
             commands.entity(entity).despawn();

@@ -115,20 +115,22 @@ fn spawn(project: Res<Project>, mut map: ResMut<ObjectMap>, mut commands: Comman
     }
 }
 
-/// Everything stands where the document, or the hand that holds it, says.
+/// Everything stands where the document, or the hand that holds it, says. While hands move, only what they hold is
+/// looked at.
 fn place(
-    project: Res<Project>,
-    drafts: Res<Drafts>,
-    settings: Res<Settings>,
+    (project, drafts, settings): (Res<Project>, Res<Drafts>, Res<Settings>),
+    map: Res<ObjectMap>,
     mut objects: Query<(&ObjectEntity, &mut Transform, &mut Visibility)>,
+    mut held: Local<Vec<ObjectId>>,
 ) {
-    if !project.is_changed() && !drafts.is_changed() && !settings.is_changed() {
+    let all = project.is_changed() || settings.is_changed();
+    if !all && !drafts.is_changed() {
         return;
     }
     let document = project.document();
-    for (id, mut at, mut visibility) in &mut objects {
+    let stand = |id: &ObjectEntity, mut at: Mut<Transform>, mut visibility: Mut<Visibility>| {
         let Some(object) = document.object(id.0) else {
-            continue;
+            return;
         };
         at.set_if_neq(transform(drafts.get(id.0).unwrap_or(&object.placement)));
         let hidden = settings.scaffold.lines == LinesShown::Hidden && object.line().is_some();
@@ -137,6 +139,19 @@ fn place(
         } else {
             Visibility::Hidden
         });
+    };
+    // What a hand let go of goes back to where the document has it.
+    let before = std::mem::replace(&mut *held, drafts.iter().map(|(id, _)| id).collect());
+    if all {
+        for (id, at, visibility) in &mut objects {
+            stand(id, at, visibility);
+        }
+        return;
+    }
+    for &id in before.iter().chain(held.iter()) {
+        if let Some((id, at, visibility)) = map.get(id).and_then(|e| objects.get_mut(e).ok()) {
+            stand(id, at, visibility);
+        }
     }
 }
 

@@ -239,9 +239,7 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 fn paint(
-    cues: Res<Cues>,
-    project: Res<Project>,
-    settings: Res<Settings>,
+    (cues, project, settings): (Res<Cues>, Res<Project>, Res<Settings>),
     draft: Res<DialDraft>,
     mut shelf: ResMut<MaterialShelf>,
     mut looks: ResMut<Looks>,
@@ -250,11 +248,19 @@ fn paint(
     mut shaders: ResMut<Assets<Shader>>,
     objects: Query<(Entity, &ObjectEntity, Worn), Without<CloneOf>>,
     clones: Query<(Entity, &CloneOf)>,
+    mut painted: Local<Cues>,
     mut commands: Commands,
 ) {
     let mut changed = Vec::new();
     let usual = Cue::default();
+    // Where nothing but cues changed, only what has another one than in the frame before is looked at.
+    let all =
+        project.is_changed() || settings.is_changed() || shelf.is_changed() || draft.is_changed();
+    let other = |id: &ObjectId| painted.0.get(id) != cues.0.get(id);
     for (entity, object, worn) in &objects {
+        if !all && !other(&object.0) {
+            continue;
+        }
         let cue = cues.0.get(&object.0).unwrap_or(&usual);
         let Some(thing) = project.document().object(object.0) else {
             continue;
@@ -285,6 +291,9 @@ fn paint(
             wanted.put_on(&mut commands.entity(entity));
             changed.push((object.0, wanted));
         }
+    }
+    if *painted != *cues {
+        painted.clone_from(&cues);
     }
     if looks.living.len() > KEPT {
         looks.living.retain(|_, handle| match handle {
