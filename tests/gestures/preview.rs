@@ -130,3 +130,23 @@ fn it_goes_with_the_marks_and_comes_back_with_undo() {
     s.ask(midair_studio::command::Command::Undo);
     shows(&mut s, &recipe);
 }
+
+#[test]
+fn a_sketch_that_comes_after_the_solid_itself_leaves_nothing_busy() {
+    let mut s = subtracted();
+    let [_, (sphere, _)] = s.marks()[..] else {
+        panic!("two marks")
+    };
+    let wanted = sequence(&s, s.placement(sphere));
+    // The solid is made while a sketch of it is on its way.
+    let fine = Key::new(&wanted, s.document().step());
+    let since = std::time::Instant::now();
+    while s.world().resource::<Evaluations>().made(&fine).is_none()
+        || preview(&s).is_busy()
+        || preview(&s).shown() != Some(fine)
+    {
+        s.frame();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        assert!(since.elapsed().as_secs() < 60, "it never rests");
+    }
+}

@@ -142,6 +142,8 @@ pub(crate) fn follow(
         }
         // It is being made ahead for update: the same solid, at the same step.
         if let Some(made) = evaluations.peek(&fine) {
+            // A sketch on its way comes too late; nobody would take it in.
+            preview.live.rest();
             let mesh = drawn.handle(fine, &made, &mut meshes);
             preview.show(fine, mesh, origin, &mut materials, &mut commands);
             return;

@@ -146,6 +146,11 @@ impl Live {
         self.flight.is_some()
     }
 
+    /// Gives up what is on its way: what was wanted is there already.
+    pub fn rest(&mut self) {
+        self.cancel();
+    }
+
     /// Gives up what is on its way, and forgets what came.
     pub fn clear(&mut self) {
         self.cancel();
