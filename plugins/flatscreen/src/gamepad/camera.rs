@@ -19,6 +19,12 @@ pub(super) fn fine(stick: Vec2) -> Vec2 {
     stick * stick.length()
 }
 
+/// How much faster the hand goes than half a view's height a second at full deflection: near the middle of the stick not at
+/// all, at its edge two and a half times: a way across the view takes less than a second.
+pub(super) fn swift(fine: Vec2) -> f32 {
+    1.0 + 1.5 * fine.length().min(1.0)
+}
+
 /// The stick of the leading hand and that of the view, mirrored for left-handed people.
 pub(super) fn sticks(controls: &Controls, settings: &Settings) -> (Vec2, Vec2) {
     let (hand, view) = (

@@ -12,7 +12,7 @@ use midair_studio::{
     tools::Aim,
 };
 
-use super::camera::{rest, sticks};
+use super::camera::{rest, sticks, swift};
 use super::{Pad, Pressed};
 use crate::bindings::{Control, Controls, Device};
 use crate::focus::Focus;
@@ -169,7 +169,7 @@ impl Pad {
     fn carry(&mut self, controls: &Controls, eye: &Transform, hand: Vec2, view: Vec2, dt: f32) {
         let pose = &mut self.poses[self.leading as usize];
         let depth = depth(eye, pose.position).clamp(*REACH.start(), *REACH.end());
-        let speed = depth * (0.5 * FIELD_OF_VIEW).tan() * dt;
+        let speed = depth * (0.5 * FIELD_OF_VIEW).tan() * swift(hand) * dt;
         if controls.pressed(Control::Deep) {
             let away = depth + hand.y * speed;
             let ahead = away.clamp(*REACH.start(), *REACH.end()) - depth;
@@ -197,7 +197,7 @@ impl Pad {
             at = orbit.focus;
             away = depth(eye, at).max(*REACH.start());
         }
-        let speed = away * (0.5 * FIELD_OF_VIEW).tan() * dt;
+        let speed = away * (0.5 * FIELD_OF_VIEW).tan() * swift(hand) * dt;
         if controls.pressed(Control::Deep) {
             let ahead = (away + hand.y * speed).clamp(*REACH.start(), *REACH.end()) - away;
             at += *eye.forward() * ahead;
