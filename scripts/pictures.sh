@@ -21,7 +21,9 @@ smaller() { pngquant --force --skip-if-larger --quality 75-98 --speed 1 --output
 
 # Nothing is fused in it: many things to list, to select and to mark.
 "$midair" play scripts/pictures.ron --save "$home/still.midair"
-"$midair" play assets/sessions/chair.ron --save "$home/chair.midair"
+made() {
+  [ -e "$home/$2.midair" ] || "$midair" play "assets/sessions/$1.ron" --save "$home/$2.midair"
+}
 
 Xvfb -displayfd 3 -screen 0 "${size}x24" 3>"$home/display" >/dev/null 2>&1 &
 xvfb=$!
@@ -49,12 +51,20 @@ window() {
 }
 open() { printf 'Panel(id: "%s", open: true)' "$1"; }
 shut() { printf 'Panel(id: "%s", open: false)' "$1"; }
-lesson() { printf 'Set(key: "help.tutorial", value: "(state: Going, step: %s)")' "$1"; }
+lesson() { printf 'Set(key: "help.tutorial", value: "{\\"state\\": \\"Going\\", \\"step\\": %s}")' "$1"; }
+mode() { printf 'Mode("%s")' "$1"; }
 select='Objects(Select(ids: [1, 3]))'
+one='Objects(Select(ids: [1]))'
 still=$home/still.midair
 
 # picture NAME ROOM : what can be seen of the app, one by one
 picture() {
+  case $1 in
+    export | settings) made chair chair ;;
+    brush) made sagittarius sagittarius ;;
+    scaffold) made figure-5 scaffold ;;
+    sweep) made twisted-tube sweep ;;
+  esac
   case $1 in
     empty) window "$1-$2" "$2" "" "$(open tutorial)" ;;
     library) window "$1-$2" "$2" "" "$(open library)" "$(shut tutorial)" ;;
@@ -63,6 +73,9 @@ picture() {
     export) window "$1-$2" "$2" "$home/chair.midair" "$(shut tutorial)" "$(open export)" ;;
     tutorial) window "$1-$2" "$2" "" "$(open library)" "$(open tutorial)" "$(lesson 1)" ;;
     settings) window "$1-$2" "$2" "$home/chair.midair" "$(shut tutorial)" "$(open settings)" ;;
+    brush) window "$1-$2" "$2" "$home/sagittarius.midair" "$(shut tutorial)" "$(mode brush)" "$one" ;;
+    scaffold) window "$1-$2" "$2" "$home/scaffold.midair" "$(shut tutorial)" "$(mode scaffold)" "$(open scaffold)" "$one" ;;
+    sweep) window "$1-$2" "$2" "$home/sweep.midair" "$(shut tutorial)" "$(mode sweep)" "$(open sweep)" "$one" ;;
     *) echo "there is no picture called $1" >&2; exit 2 ;;
   esac
 }
@@ -72,11 +85,11 @@ if [ "$to" = docs/pictures ]; then
     "$midair" play "assets/sessions/$name.ron" --shot "$to/$name.png"
     smaller "$to/$name.png"
   done
-  for of in outline-Dusk operands-Day; do
+  for of in empty-Dusk library-Day operands-Day outline-Dusk export-Day tutorial-Dusk settings-Day brush-Dusk; do
     picture "${of%-*}" "${of#*-}"
   done
 else
-  for name in ${only:-empty library operands outline export tutorial settings}; do
+  for name in ${only:-empty library operands outline export tutorial settings brush scaffold sweep}; do
     for room in ${ROOMS:-Dusk Day}; do picture "$name" "$room"; done
   done
 fi

@@ -15,7 +15,7 @@ use midair_space::room::Root;
 use midair_studio::command::Command;
 use midair_studio::evaluate::{Delivery, Evaluations};
 use midair_studio::objects::extent;
-use midair_studio::project::Project;
+use midair_studio::project::{Project, Thumbnails};
 use midair_studio::show::{Eye, Unhurried, camera, headset};
 
 /// How long a picture may take: a software renderer compiles its shaders first.
@@ -219,6 +219,7 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
         // Before the end of the frame, where a clean end is seen.
         PostUpdate,
         move |evaluations: Res<Evaluations>,
+              thumbnails: Res<Thumbnails>,
               preview: Res<Preview>,
               mut taken: ResMut<Taken>,
               mut cameras: Query<&mut Camera, With<Eye>>,
@@ -241,7 +242,11 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
             settled = if let Some(next) = next {
                 ask.write(next);
                 0
-            } else if asks.len() == 0 && evaluations.outstanding() == 0 && !preview.is_busy() {
+            } else if asks.len() == 0
+                && evaluations.outstanding() == 0
+                && !thumbnails.is_busy()
+                && !preview.is_busy()
+            {
                 settled + 1
             } else {
                 0

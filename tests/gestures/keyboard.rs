@@ -254,3 +254,105 @@ fn the_arrows_reach_what_a_long_list_does_not_show() {
     assert_eq!(desk.focus().region().map(|r| r.name), Some("outline"));
     assert!(seen.len() >= objects, "{} of {objects}", seen.len());
 }
+
+impl Desk {
+    fn mode(&self) -> String {
+        let tools = self.world().resource::<midair_studio::tools::Tools>();
+        tools.active().unwrap().id.as_str().to_owned()
+    }
+}
+
+/// The four modes, by the keys that take them and by what the arrow upwards changes in them.
+const MODES: [(KeyCode, &str, &str); 4] = [
+    (KeyCode::Digit1, "csg", ""),
+    (KeyCode::Digit2, "scaffold", "scaffold.draws"),
+    (KeyCode::Digit3, "sweep", "sweep.shape"),
+    (KeyCode::Digit4, "brush", "brush.radius"),
+];
+
+#[test]
+fn every_mode_is_taken_and_worked_by_keys_and_has_its_panel_in_the_bar() {
+    let mut desk = Desk::new();
+    desk.open_eyes();
+    let panels: Vec<_> = desk.world().resource::<Panels>().all().to_vec();
+    for (key, id, changes) in MODES {
+        desk.strike_one(key);
+        desk.wait(3);
+        assert_eq!(desk.mode(), id);
+        for other in &panels {
+            desk.panel(other.id, other.id == id);
+        }
+        // One line, and of the modes' panels only this one's.
+        let bar = desk.focus().regions().iter().find(|r| r.name == "bar");
+        let heights: Vec<_> = bar
+            .unwrap()
+            .spots
+            .iter()
+            .map(|s| s.rect.center().y)
+            .collect();
+        let low = heights.iter().copied().fold(f32::INFINITY, f32::min);
+        let high = heights.iter().copied().fold(0.0, f32::max);
+        assert!(high - low < 4.0, "{id}: the bar has one line: {heights:?}");
+        let named = |desk: &mut Desk, name: &str| {
+            let seen = desk.screen().into_iter();
+            let bar = seen.filter(|s| s.rect.center().y < high + 10.0);
+            bar.filter(|s| s.name().eq_ignore_ascii_case(name)).count()
+        };
+        for (_, other, _) in &MODES[1..] {
+            let count = if *other == id { 2 } else { 1 };
+            assert_eq!(named(&mut desk, other), count, "{other} in {id}");
+        }
+        // Its cross is on the arrows.
+        if !changes.is_empty() {
+            let value = |d: &Desk| {
+                let all = serde_json::to_value(d.world().resource::<Settings>()).unwrap();
+                let (part, name) = changes.split_once('.').unwrap();
+                all[part][name].clone()
+            };
+            let before = value(&desk);
+            desk.strike_one(KeyCode::ArrowUp);
+            desk.wait(3);
+            assert_ne!(value(&desk), before, "{id}: the arrow changes {changes}");
+            // And every widget of its panel is reached.
+            desk.strike_one(KeyCode::F6);
+            let region = desk.focus().regions().iter().find(|r| r.name == id);
+            let wanted: HashSet<_> = region.unwrap().spots.iter().map(|s| s.id).collect();
+            let seen = desk.walk();
+            assert!(wanted.is_subset(&seen), "{id}: everything is reached");
+            desk.strike_one(KeyCode::Escape);
+        }
+    }
+}
+
+#[test]
+fn everything_that_is_not_a_gamepads_alone_has_a_key() {
+    let desk = Desk::new();
+    let bindings = desk.world().resource::<Bindings>();
+    // Sticks and what goes with them; the keyboard on the screen, which a keyboard needs least; and what a key does
+    // by another name: delete, the library, the focus in panels.
+    let pads = [
+        "stick",
+        "Stick",
+        "Deep",
+        "Roam",
+        "Type",
+        "Centre",
+        "Menu",
+        "Alt",
+        "PanelUp",
+        "PanelRight",
+        "PanelDown",
+        "PanelLeft",
+        "PanelPress",
+    ];
+    for &control in Control::ALL {
+        let name = format!("{control:?}");
+        if pads.iter().any(|p| name.contains(p)) {
+            continue;
+        }
+        assert!(
+            !bindings.label(control, Device::Keys).is_empty(),
+            "{name} has no key"
+        );
+    }
+}

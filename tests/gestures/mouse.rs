@@ -358,3 +358,37 @@ fn the_ruler_measures_between_two_clicks() {
     desk.strike_one(KeyCode::Escape);
     assert_eq!(desk.world().resource::<Ruler>().ends(), None);
 }
+
+#[test]
+fn what_is_opened_is_in_view_and_what_is_new_begins_at_the_start() {
+    let mut desk = Desk::new();
+    let start = desk.seen(Vec3::ZERO);
+    // A document of which nothing stands where one looks at first.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("far.midair");
+    let mut document = midair_document::Document::new();
+    {
+        let mut history =
+            midair_document::History::new(document, midair_document::MeshStore::new());
+        let shelf = desk.world().resource::<midair_studio::project::Shelf>();
+        let cube = shelf.library.get("solid/cube").unwrap().placed();
+        let at = midair_field::Placement::at(Vec3::new(7.0, 3.0, -5.0));
+        let object = midair_document::Object::solid("far", cube).placed(at);
+        history.add(object).unwrap();
+        document = history.document().clone();
+    }
+    midair_document::save(&file, &document, &midair_document::MeshStore::new()).unwrap();
+    desk.app
+        .world_mut()
+        .write_message(midair_studio::command::Command::Open(file));
+    desk.settle();
+    assert_eq!(desk.document().len(), 1, "{:?}", desk.warnings());
+    let seen = desk.seen(Vec3::new(7.0, 3.0, -5.0));
+    assert!(seen.truncate().length() < 0.1 * seen.z, "{seen}");
+    assert!((0.2..3.0).contains(&seen.z), "{seen}");
+    desk.app
+        .world_mut()
+        .write_message(midair_studio::command::Command::New);
+    desk.settle();
+    assert!(desk.seen(Vec3::ZERO).distance(start) < 1e-3);
+}

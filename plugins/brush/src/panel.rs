@@ -16,7 +16,7 @@ use midair_studio::{
             Vec2, vec2,
         },
         icon,
-        kit::{empty, icon_button, strong},
+        kit::{empty, field, icon_button, strong},
     },
     project::{Picture, Places, Project, Selection, Shelf, Thumbnails},
     settings::{BrushSettings, BrushSkeleton, Settings},
@@ -109,17 +109,13 @@ fn sizes(ui: &mut Ui, brush: &BrushSettings, settings: &Settings, asks: &mut Vec
     };
     let slider = Slider::new(&mut value, least..=most)
         .logarithmic(true)
-        .custom_formatter(move |v, _| units::length(v as f32, unit))
-        .text(what);
-    if ui.add(slider).changed() {
+        .custom_formatter(move |v, _| units::length(v as f32, unit));
+    if field(ui, what, slider).changed() {
         asks.push(Settings::command(key, value));
     }
     let mut strength = brush.strength;
-    let slider = Slider::new(&mut strength, 0.1..=10.0)
-        .logarithmic(true)
-        .text("Strength");
-    let changed = ui
-        .add(slider)
+    let slider = Slider::new(&mut strength, 0.1..=10.0).logarithmic(true);
+    let changed = field(ui, "Strength", slider)
         .on_hover_text("The weight of a stroke: above 1 it stands out and melts farther")
         .changed();
     if changed {
@@ -138,20 +134,13 @@ fn blending(
         .mix
         .or(painting.map(|c| (c.blend, c.reach)))
         .unwrap_or((brush.blend, brush.reach));
-    let first = ui
-        .add(
-            Slider::new(&mut blend, 1.0..=HARD)
-                .logarithmic(true)
-                .fixed_decimals(1)
-                .text("Blend"),
-        )
+    let slider = Slider::new(&mut blend, 1.0..=HARD)
+        .logarithmic(true)
+        .fixed_decimals(1);
+    let first = field(ui, "Blend", slider)
         .on_hover_text("1: strokes melt into each other; 16: they are united as they are");
-    let second = ui
-        .add(
-            Slider::new(&mut reach, 1.05..=3.0)
-                .fixed_decimals(2)
-                .text("Reach"),
-        )
+    let slider = Slider::new(&mut reach, 1.05..=3.0).fixed_decimals(2);
+    let second = field(ui, "Reach", slider)
         .on_hover_text("How far strokes feel each other, as a multiple of their radius");
     let changed = first.changed() || second.changed();
     let dragged = first.dragged() || second.dragged();
@@ -398,11 +387,8 @@ impl BrushPanel {
             Some((of, weight)) if of == at => weight,
             _ => stroke.weight,
         };
-        let response = ui.add(
-            Slider::new(&mut weight, 0.1..=10.0)
-                .logarithmic(true)
-                .text("Weight"),
-        );
+        let slider = Slider::new(&mut weight, 0.1..=10.0).logarithmic(true);
+        let response = field(ui, "Weight", slider);
         if response.changed() {
             self.weight = Some((at, weight));
         }

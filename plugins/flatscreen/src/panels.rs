@@ -264,8 +264,9 @@ fn draw(
             .resizable(false)
             .default_height(room + 64.0)
             .constrain_to(view)
-            .default_pos(view.center())
-            .pivot(egui::Align2::CENTER_CENTER)
+            // Beside the middle, where the work is.
+            .default_pos(view.right_center() - egui::vec2(24.0, 0.0))
+            .pivot(egui::Align2::RIGHT_CENTER)
             .show(ctx, |ui| {
                 heading(ui, &info, asks);
                 ui.add_space(4.0);

@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use bevy::prelude::*;
+use bevy_egui::egui;
 use midair_studio::{
     project::{Project, Selection},
     ruler::selected_box,
@@ -12,7 +13,8 @@ use midair_studio::{
 
 use crate::bindings::{Control, Controls};
 use crate::gamepad::Pad;
-use crate::orbit::Orbit;
+use crate::orbit::{FIELD_OF_VIEW, Orbit};
+use crate::panels::Screen;
 use crate::pointer::Pointer;
 
 /// The world was moved: hands and eyes stay where they are in the room.
@@ -34,16 +36,24 @@ pub(crate) fn jump(
     controls: Res<Controls>,
     mut pad: ResMut<Pad>,
     (project, selection, drafts): (Res<Project>, Res<Selection>, Res<Drafts>),
+    (screen, windows): (Res<Screen>, Query<&Window>),
     mut orbit: Single<&mut Orbit>,
+    mut shown: Local<Option<u64>>,
 ) {
     let asked = std::mem::take(&mut pad.frame) || controls.just_pressed(Control::FrameSelection);
     let everything = controls.just_pressed(Control::FrameAll);
-    if asked || everything {
+    // What is opened is seen; what is new begins where one stood at first.
+    let opened = shown.replace(project.number()) != Some(project.number());
+    if opened && project.document().objects().next().is_none() {
+        **orbit = Orbit::default();
+    } else if asked || everything || opened {
         let all = Selection(project.document().objects().map(|(id, _)| id).collect());
         let selected = selected_box(&project, &selection, &drafts).filter(|_| !everything);
         if let Some((low, high)) = selected.or_else(|| selected_box(&project, &all, &drafts)) {
             orbit.focus = low.midpoint(high);
-            orbit.distance = (0.5 * (high - low).length() / 0.33).clamp(0.1, 40.0);
+            let size = windows.iter().next().map(|w| screen.point(w.size()));
+            let part = (0.5 * FIELD_OF_VIEW).tan() * free(screen.view(), size);
+            orbit.distance = (0.5 * (high - low).length() / part).clamp(0.1, 40.0);
         }
     }
     if controls.just_pressed(Control::ResetView) {
@@ -60,6 +70,18 @@ pub(crate) fn jump(
             orbit.look_from(yaw, pitch);
         }
     }
+}
+
+/// How much of half the window's height what stands in its middle may take before a panel hides it.
+fn free(view: Option<egui::Rect>, window: Option<egui::Pos2>) -> f32 {
+    const MOST: f32 = 0.84;
+    let (Some(view), Some(size)) = (view, window) else {
+        return MOST;
+    };
+    let middle = 0.5 * size.to_vec2();
+    let across = (middle.x - view.left()).min(view.right() - middle.x);
+    let high = (middle.y - view.top()).min(view.bottom() - middle.y);
+    (across.min(high) / middle.y).clamp(0.25, MOST)
 }
 
 impl Orbit {

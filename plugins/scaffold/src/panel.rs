@@ -95,8 +95,8 @@ impl ScaffoldPanel {
             " mm",
             asks,
         );
-        ui.horizontal(|ui| {
-            ui.label("Lines are");
+        kit::row(ui, "Lines", |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
             for (name, shown) in [
                 ("shown", LinesShown::Shown),
                 ("dimmed", LinesShown::Dimmed),
@@ -128,11 +128,11 @@ impl ScaffoldPanel {
             return;
         };
         match objects.len() {
-            1 => ui.strong(&first.name),
-            count => ui.strong(format!("{count} lines and strokes")),
+            1 => ui.label(kit::strong(&first.name)),
+            count => ui.label(kit::strong(format!("{count} lines and strokes"))),
         };
         if let Some(line) = first.line().filter(|_| objects.len() == 1) {
-            ui.label(words(&line.kept));
+            ui.weak(words(&line.kept));
             let there = affine(&first.placement);
             self.line(ui, line.ends().map(|p| there.transform_point3(p)), asks);
         }
@@ -163,21 +163,17 @@ impl ScaffoldPanel {
             }
         }
         let mut strength = self.strength.unwrap_or(1.0);
+        let slider = Slider::new(&mut strength, 0.1..=4.0).logarithmic(true);
+        if kit::field(ui, "Anew with", slider).changed() {
+            self.strength = Some(strength);
+        }
         ui.horizontal_wrapped(|ui| {
-            if ui
-                .add(Slider::new(&mut strength, 0.1..=4.0).logarithmic(true))
-                .changed()
-            {
-                self.strength = Some(strength);
-            }
             if ui.button("Correct again").clicked() {
                 asks.push(Ask::Again(strength).command());
             }
             if ui.button("As drawn").clicked() {
                 asks.push(Ask::Again(0.0).command());
             }
-        });
-        ui.horizontal_wrapped(|ui| {
             if ui
                 .button("Fill")
                 .on_hover_text("What is closed and flat becomes a plate")
@@ -352,17 +348,12 @@ impl ScaffoldPanel {
     ) -> Option<f64> {
         let held = self.dragged.filter(|(k, _)| *k == key).map(|(_, v)| v);
         let mut now = held.unwrap_or(value);
-        let field = ui
-            .horizontal(|ui| {
-                ui.label(name);
-                let drag = DragValue::new(&mut now)
-                    .speed(0.002 * (high - low).min(500.0))
-                    .range(low..=high)
-                    .max_decimals(2)
-                    .suffix(suffix);
-                ui.add(drag).on_hover_text(name)
-            })
-            .inner;
+        let drag = DragValue::new(&mut now)
+            .speed(0.002 * (high - low).min(500.0))
+            .range(low..=high)
+            .max_decimals(2)
+            .suffix(suffix);
+        let field = kit::field(ui, name, drag).on_hover_text(name);
         if field.dragged() || field.has_focus() {
             self.dragged = Some((key, now));
             return None;

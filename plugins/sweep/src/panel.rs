@@ -45,13 +45,12 @@ impl Panel for SweepPanel {
                 self.number(ui, "Thickness, mm", &mut mm, 0.0..=100.0, 1);
                 now.thickness = mm * 1e-3;
             }
-            self.number(ui, "Smooth when let go", &mut now.smooth, 0.0..=20.0, 0);
+            self.number(ui, "Smoothing", &mut now.smooth, 0.0..=20.0, 0);
         }
         ui.separator();
-        ui.horizontal(|ui| {
-            ui.label("Hands");
+        kit::row(ui, "Hands", |ui| {
             for (hands, name) in [
-                (SweepHands::Auto, "as they are"),
+                (SweepHands::Auto, "any"),
                 (SweepHands::Two, "two"),
                 (SweepHands::One, "one"),
             ] {
@@ -75,18 +74,20 @@ impl SweepPanel {
                 .object(midair_document::ObjectId(*id))
                 .map_or("gone".to_owned(), |o| o.name.clone()),
         };
-        ComboBox::from_label("Clone")
-            .selected_text(name)
-            .show_ui(ui, |ui| {
-                for (id, object) in document.objects().filter(|(_, o)| o.recipe().is_some()) {
-                    let item = SweepItem::Object(id.0);
-                    ui.selectable_value(&mut now.item, item, &object.name);
-                }
-                for component in library.categories().flat_map(|(_, all)| all) {
-                    let item = SweepItem::Component(component.id.clone());
-                    ui.selectable_value(&mut now.item, item, &component.name);
-                }
-            });
+        kit::row(ui, "Clone", |ui| {
+            ComboBox::from_id_salt("Clone")
+                .selected_text(name)
+                .show_ui(ui, |ui| {
+                    for (id, object) in document.objects().filter(|(_, o)| o.recipe().is_some()) {
+                        let item = SweepItem::Object(id.0);
+                        ui.selectable_value(&mut now.item, item, &object.name);
+                    }
+                    for component in library.categories().flat_map(|(_, all)| all) {
+                        let item = SweepItem::Component(component.id.clone());
+                        ui.selectable_value(&mut now.item, item, &component.name);
+                    }
+                });
+        });
         self.number(ui, "How many", &mut now.clones, 1.0..=256.0, 0);
         let mut mm = now.clone_size * 1e3;
         self.number(ui, "Longest side, mm", &mut mm, 1.0..=400.0, 0);
@@ -104,8 +105,8 @@ impl SweepPanel {
             return;
         };
         let Some(sweep) = object.sweep() else { return };
-        ui.strong(&object.name);
-        ui.label(format!("{} curves", sweep.ribs.len()));
+        ui.label(kit::strong(&object.name));
+        ui.weak(format!("{} curves", sweep.ribs.len()));
         let mut count = sweep.count;
         if self.number(ui, "Points of it", &mut count, 2.0..=256.0, 0) && count != sweep.count {
             asks.push(SweepAsk::Count(count).command());
@@ -152,10 +153,8 @@ impl SweepPanel {
     ) -> bool {
         let held = self.held.filter(|(n, _)| *n == name).map(|h| h.1);
         let mut now = held.unwrap_or(value.to_f64() as f32);
-        let slider = Slider::new(&mut now, range)
-            .fixed_decimals(decimals)
-            .text(name);
-        let response = ui.add(slider);
+        let slider = Slider::new(&mut now, range).fixed_decimals(decimals);
+        let response = kit::field(ui, name, slider);
         if response.dragged() || response.has_focus() && response.changed() {
             self.held = Some((name, now));
             return false;

@@ -2,7 +2,8 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, Ui};
 use midair_document::Document;
 
-use super::{Dock, Files, Host, Panels, icon, kit};
+use super::style::UNIT;
+use super::{Dock, Files, Host, PanelInfo, Panels, icon, kit};
 use crate::carry::in_hands;
 use crate::command::{Command, Dialog, Dialogs, Errands};
 use crate::hold::Held;
@@ -29,6 +30,12 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
     let held = world.resource::<Held>();
     let mut asks = Vec::new();
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.5 * UNIT;
+        ui.spacing_mut().button_padding.x = UNIT;
+        // As tall as the tallest, so that the first stands no higher than the others.
+        ui.spacing_mut().interact_size.y = 4.0 * UNIT;
+        let shown = buttons(tools, panels);
+        let named_panels = fits(ui, tools, &shown);
         ui.menu_button("File", |ui| files(ui, world, &mut asks));
         let history = project.history();
         let named = |verb: &str, name: Option<&str>, keys: &str| match name {
@@ -70,18 +77,18 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             }
         }
         ui.separator();
-        for info in panels.all().iter().filter(|i| i.in_bar) {
+        for info in shown {
             let open = panels.is_open(info.id);
-            // What is looked at now and then is an icon: the bar stays on one line.
-            let text = match info.dock {
-                Dock::Left | Dock::Right => format!("{} {}", info.icon, info.title),
-                _ => info.icon.to_owned(),
+            let text = if named_panels && has_word(tools, info) {
+                format!("{} {}", info.icon, info.title)
+            } else {
+                info.icon.to_owned()
             };
-            if ui
-                .selectable_label(open, text)
-                .on_hover_text(info.title)
-                .clicked()
-            {
+            let button = ui.selectable_label(open, text).on_hover_text(info.title);
+            button.widget_info(|| {
+                egui::WidgetInfo::selected(egui::WidgetType::Button, true, open, info.title)
+            });
+            if button.clicked() {
                 asks.push(Command::Panel {
                     id: info.id.to_owned(),
                     open: !open,
@@ -90,9 +97,7 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
         }
         ui.separator();
         step(ui, state, project, &mut asks);
-        ui.separator();
-        let unsaved = if history.is_unsaved() { " •" } else { "" };
-        ui.label(format!("{}{unsaved}", project.title()));
+        title(ui, project);
     });
     if !left_behind.0.is_empty() {
         ui.horizontal(|ui| {
@@ -143,6 +148,67 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
     }
     asks.extend(state.files.show(ui.ctx()));
     asks
+}
+
+/// The panels that have a button now: those of other modes have none.
+fn buttons<'a>(tools: &Tools, panels: &'a Panels) -> Vec<&'a PanelInfo> {
+    let of_mode = |id: &str| tools.all().iter().any(|t| t.id.as_str() == id);
+    let active = tools.active().map(|t| t.id.as_str());
+    let mut shown: Vec<_> = panels.all().iter().filter(|i| i.in_bar).collect();
+    shown.retain(|i| !of_mode(i.id) || active == Some(i.id));
+    // That of the mode stands beside the modes.
+    shown.sort_by_key(|i| !of_mode(i.id));
+    shown
+}
+
+/// What is looked at now and then is an icon, and so is the panel of the mode, which is named beside it.
+fn has_word(tools: &Tools, info: &PanelInfo) -> bool {
+    matches!(info.dock, Dock::Left | Dock::Right)
+        && tools.all().iter().all(|t| t.id.as_str() != info.id)
+}
+
+/// Whether the bar stays on one line with the names of panels on their buttons.
+fn fits(ui: &Ui, tools: &Tools, shown: &[&PanelInfo]) -> bool {
+    let spacing = ui.spacing();
+    let gap = spacing.item_spacing.x;
+    let button = |text: &str| {
+        kit::width(ui, text, egui::TextStyle::Button) + 2.0 * spacing.button_padding.x + gap
+    };
+    let mut wide = button("File") + 2.0 * (18.0 + 2.0 * spacing.button_padding.x + gap);
+    wide += tools.all().iter().map(|t| button(t.name)).sum::<f32>();
+    wide += shown
+        .iter()
+        .map(|i| {
+            if has_word(tools, i) {
+                button(&format!("{} {}", i.icon, i.title))
+            } else {
+                button(i.icon)
+            }
+        })
+        .sum::<f32>();
+    // The step with its word, and three lines between the parts.
+    wide += kit::width(ui, "Step", egui::TextStyle::Body) + button("20.0 mm") + gap;
+    wide += 3.0 * (6.0 + gap);
+    wide <= ui.max_rect().width()
+}
+
+/// What one works on, where the line has room for it: the window says it as well.
+fn title(ui: &mut Ui, project: &Project) {
+    let unsaved = if project.history().is_unsaved() {
+        " •"
+    } else {
+        ""
+    };
+    let text = format!("{}{unsaved}", project.title());
+    let room = ui.max_rect().right() - ui.cursor().left() - 24.0;
+    if room < 64.0 {
+        return;
+    }
+    ui.separator();
+    ui.scope(|ui| {
+        ui.set_max_width(room);
+        ui.add(egui::Label::new(text).truncate());
+    });
 }
 
 fn files(ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
@@ -250,12 +316,15 @@ fn step(ui: &mut Ui, state: &mut Bar, project: &Project, asks: &mut Vec<Command>
     ui.label("Step");
     let slider = ui
         .add(
-            egui::Slider::new(&mut millimetres, least * 1e3..=most * 1e3)
+            egui::DragValue::new(&mut millimetres)
+                .range(least * 1e3..=most * 1e3)
                 .suffix(" mm")
                 .fixed_decimals(1)
-                .step_by(0.5),
+                .speed(0.1),
         )
-        .on_hover_text("How fine solids are made: smaller is finer and slower");
+        .on_hover_text(
+            "How fine solids are made: smaller is finer and slower. Drag, or click and type",
+        );
     if slider.changed() {
         state.step = Some(millimetres * 1e-3);
     }

@@ -1,8 +1,8 @@
 //! The parts that panels are made of, so that the same thing looks the same everywhere.
 
 use bevy_egui::egui::{
-    Button, Context, FontFamily, Id, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui,
-    Vec2, WidgetInfo, WidgetType,
+    Align, Button, Context, FontFamily, Id, Label, Layout, Response, RichText, Sense, Stroke,
+    StrokeKind, TextStyle, Ui, Vec2, Widget, WidgetInfo, WidgetType,
 };
 
 use super::style::{FILLED, Palette, STRONG, UNIT};
@@ -38,6 +38,45 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
     let palette = Palette::of(ui.visuals());
     let text = strong(text).color(palette.on_fill);
     ui.add(Button::new(text).fill(palette.accent_fill))
+}
+
+/// Points across the names at the left of [`row`]s, in a column or a board of the usual width.
+const NAMES: f32 = 112.0;
+/// Points across the number beside a slider.
+const NUMBER: f32 = 64.0;
+
+/// One thing to set: its name at the left, what sets it at the right, below that of the row above. Sliders take what room
+/// there is.
+pub fn row<R>(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui) -> R) -> R {
+    wide_row(ui, NAMES, name, show)
+}
+
+/// The same with names of so many points across, where they are longer.
+pub fn wide_row<R>(ui: &mut Ui, across: f32, name: &str, show: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        let across = across.min(0.6 * ui.available_width());
+        let size = Vec2::new(across, ui.spacing().interact_size.y);
+        let left = Layout::left_to_right(Align::Center);
+        ui.allocate_ui_with_layout(size, left, |ui| {
+            ui.set_min_size(size);
+            ui.add(Label::new(name).truncate());
+        });
+        let room = ui.available_width() - NUMBER - 2.0 * UNIT;
+        ui.spacing_mut().slider_width = room.clamp(40.0, 240.0);
+        show(ui)
+    })
+    .inner
+}
+
+/// The same for what has a response of its own, which screen readers call by the name of the row.
+pub fn field(ui: &mut Ui, name: &str, widget: impl Widget) -> Response {
+    row(ui, name, |ui| {
+        let response = ui.add(widget);
+        let id = response.id;
+        ui.ctx()
+            .accesskit_node_builder(id, |node| node.set_label(name));
+        response
+    })
 }
 
 /// How wide a text is in a style, in points.

@@ -4,7 +4,7 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, DragValue, Ui};
 use serde_json::Value;
 
-use super::{Panel, icon};
+use super::{Panel, icon, kit};
 use crate::command::Command;
 use crate::evaluate::Evaluations;
 use crate::settings::Settings;
@@ -38,6 +38,10 @@ const RANGES: [(&str, f64, f64); 10] = [
     ("symmetry.count", 1.0, 64.0),
 ];
 
+/// Points across the names of settings, and across everything.
+const NAMES: f32 = 208.0;
+const WIDTH: f32 = 384.0;
+
 #[derive(Default)]
 pub(super) struct SettingsPanel {
     page: String,
@@ -62,8 +66,12 @@ impl Panel for SettingsPanel {
         let rank = |part: &str| FIRST.iter().position(|f| *f == part);
         let mut parts = parts;
         parts.sort_by_key(|(part, _)| rank(part).unwrap_or(FIRST.len()));
-        ui.set_width(ui.available_width().min(400.0));
-        ui.add(egui::TextEdit::singleline(&mut self.query).hint_text("Find a setting"));
+        ui.set_width(WIDTH.min(ui.ctx().viewport_rect().width() - 64.0));
+        let search = egui::TextEdit::singleline(&mut self.query)
+            .hint_text(format!("{}  Find a setting", icon::MAGNIFYING_GLASS))
+            .margin(egui::Margin::symmetric(8, 6))
+            .desired_width(f32::INFINITY);
+        ui.add(search);
         let query = self.query.trim().to_lowercase();
         if query.is_empty() {
             ui.horizontal_wrapped(|ui| {
@@ -108,6 +116,9 @@ impl SettingsPanel {
         asks: &mut Vec<Command>,
     ) {
         if let Value::Object(parts) = value {
+            // The room comes before what is set more seldom.
+            let mut parts: Vec<_> = parts.iter().collect();
+            parts.sort_by_key(|(name, _)| *name != "room");
             for (name, value) in parts {
                 self.rows(ui, &format!("{key}.{name}"), value, query, asks);
             }
@@ -125,18 +136,16 @@ impl SettingsPanel {
                 }
             }
             Value::Number(number) => {
-                ui.horizontal_wrapped(|ui| {
-                    let name = ui.label(label);
-                    let kept = number.as_f64().unwrap_or_default();
-                    self.number(ui, key, kept, number.is_f64(), name.id, asks);
+                let kept = number.as_f64().unwrap_or_default();
+                kit::wide_row(ui, NAMES, &label, |ui| {
+                    self.number(ui, key, kept, number.is_f64(), &label, asks);
                 });
             }
             Value::String(chosen) => {
                 let Some((_, choices)) = CHOICES.iter().find(|(k, _)| *k == key) else {
                     return;
                 };
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(label);
+                kit::wide_row(ui, NAMES, &label, |ui| {
                     for &choice in *choices {
                         let is = chosen == choice;
                         if ui.selectable_label(is, choice).clicked() && !is {
@@ -155,7 +164,7 @@ impl SettingsPanel {
         key: &str,
         kept: f64,
         broken: bool,
-        name: egui::Id,
+        name: &str,
         asks: &mut Vec<Command>,
     ) {
         let own = self.number.as_ref().filter(|(k, _)| k == key);
@@ -166,7 +175,9 @@ impl SettingsPanel {
             .range(low..=high)
             .speed((high - low).min(10.0) * 0.004)
             .max_decimals(if broken { 3 } else { 0 });
-        let response = ui.add(drag).labelled_by(name);
+        let response = ui.add(drag);
+        ui.ctx()
+            .accesskit_node_builder(response.id, |node| node.set_label(name));
         if response.changed() {
             self.number = Some((key.to_owned(), value));
         }

@@ -237,6 +237,9 @@ pub fn apply_style(ctx: &egui::Context, look: &LookSettings) {
     style.spacing.item_spacing = Vec2::splat(UNIT);
     style.spacing.button_padding = Vec2::new(10.0, 4.0);
     style.spacing.interact_size = Vec2::new(40.0, 28.0);
+    // A box to tick has corners: smaller it would be as round as a dot.
+    style.spacing.icon_width = 18.0;
+    style.spacing.icon_width_inner = 10.0;
     style.spacing.window_margin = Margin::same(16);
     style.spacing.menu_margin = Margin::same(UNIT as i8);
     style.spacing.scroll.bar_width = UNIT;
@@ -355,7 +358,8 @@ mod tests {
                     for digit in '0'..='9' {
                         assert_eq!(fonts.glyph_width(&font, digit), one, "{family:?}: {digit}");
                     }
-                    for sign in "∪∩−×°…½∞".chars() {
+                    // Signs of operands and numbers, and the marks of construction lines.
+                    for sign in "∪∩−×°…½∞●○⟂‖=∠·".chars() {
                         assert!(fonts.has_glyph(&font, sign), "{family:?}: {sign}");
                     }
                 });

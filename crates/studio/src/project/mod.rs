@@ -8,6 +8,7 @@ mod thumbnails;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use bevy::prelude::*;
 use midair_document::{Document, Edit, History, MeshStore, ObjectId};
@@ -73,6 +74,9 @@ impl Places {
     }
 }
 
+/// How many there have been in this run.
+static PROJECTS: AtomicU64 = AtomicU64::new(0);
+
 /// The work at hand.
 #[derive(Resource)]
 pub struct Project {
@@ -83,6 +87,7 @@ pub struct Project {
     give_up: bool,
     /// The images of live symmetry.
     images: Vec<Image>,
+    number: u64,
 }
 
 impl Project {
@@ -94,7 +99,13 @@ impl Project {
             work,
             give_up: false,
             images: Vec::new(),
+            number: PROJECTS.fetch_add(1, Ordering::Relaxed),
         }
+    }
+
+    /// Tells one work from the next in the same run: it changes when a document is opened, restored or begun.
+    pub fn number(&self) -> u64 {
+        self.number
     }
 
     /// The document as it stands.

@@ -65,7 +65,8 @@ pub(crate) fn draw(
         .with_clip_rect(view);
     let lit = dragged.map(|d| d.handle).or(gizmo.hovered);
     let shade = |handle: Handle| match lit {
-        Some(one) if one == handle => Color32::WHITE,
+        // White is to be seen in a dark room only.
+        Some(one) if one == handle => ctx.global_style().visuals.strong_text_color(),
         // The others step back.
         Some(_) => colour(handle).gamma_multiply(0.35),
         None => colour(handle),

@@ -198,6 +198,9 @@ pub(crate) fn steer(
     }
 }
 
+/// A thing whose origin is farther from it than this, in metres, is taken by its middle.
+const NEAR: f32 = 0.05;
+
 /// Where the handles of these things stand: in the middle of the box around them.
 fn stand(project: &Project, mode: Mode, things: &[(ObjectId, Placement)], eye: Vec3) -> Frame {
     let document = project.document();
@@ -206,7 +209,12 @@ fn stand(project: &Project, mode: Mode, things: &[(ObjectId, Placement)], eye: V
     });
     let whole = boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
     let pivot = match (things, whole) {
-        ([(_, only)], _) => only.translation,
+        // What is drawn may lie far from its own origin: then its middle is meant.
+        ([(_, only)], Some((low, high)))
+            if only.translation.clamp(low, high).distance(only.translation) < NEAR =>
+        {
+            only.translation
+        }
         (_, Some((low, high))) => low.midpoint(high),
         _ => things[0].1.translation,
     };

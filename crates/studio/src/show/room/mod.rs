@@ -142,8 +142,9 @@ fn furnish(
         InfiniteGridSettings {
             // A line every 0.1 m, a strong one every metre.
             scale: 10.0,
-            fadeout_distance: 12.0,
-            dot_fadeout_strength: 0.3,
+            // Far lines stand closer than pixels do, seen from low down more so: they fade before they shimmer.
+            fadeout_distance: 9.0,
+            dot_fadeout_strength: 0.5,
             ..default()
         },
     ));
