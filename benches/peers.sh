@@ -29,7 +29,7 @@ if [ ! -x "$cache/target/release/rbench" ]; then
     echo "the peers in Rust cannot be built: parry3d is left out" >&2
 fi
 if [ -f "$peers/bench_mvc.py" ] && "$python" -c 'import scipy' 2>/dev/null; then
-  cargo build --quiet --manifest-path "$here/../Cargo.toml" -p midair-bench --example mvc
+  cargo build --quiet --manifest-path "$here/../Cargo.toml" -p midair-beautify --example mvc
   "$python" "$here/mvc.py" --ours "$target/debug/examples/mvc" --peer "$peers/bench_mvc.py"
 else
   echo "no scipy: fair curves are left out" >&2

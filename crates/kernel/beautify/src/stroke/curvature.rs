@@ -5,6 +5,13 @@ use glam::DVec3;
 /// Keeps the curvature of samples on one spot finite.
 const TINY: f64 = 1e-12;
 
+/// c(bᵢ) alone, with fewer roots.
+pub(super) fn bent(before: DVec3, at: DVec3, after: DVec3) -> f64 {
+    let (a, c, e) = (before - at, after - at, after - before);
+    let sides = a.length_squared() * c.length_squared() * e.length_squared();
+    2.0 * a.cross(c).length() / (sides.sqrt() + TINY)
+}
+
 /// c(bᵢ) = 4A / (‖a‖ ‖c‖ ‖e‖) of the triangle before, at, after (Eq. 8), and its derivative by the
 /// three points.
 pub(super) fn menger(before: DVec3, at: DVec3, after: DVec3) -> (f64, [DVec3; 3]) {
@@ -39,6 +46,7 @@ mod tests {
     fn points_of_a_circle_have_its_curvature() {
         let at = |t: f64| DVec3::new(2.0 * t.cos(), 2.0 * t.sin(), 1.0);
         assert!((menger(at(0.1), at(0.4), at(0.9)).0 - 0.5).abs() < 1e-12);
+        assert!((bent(at(0.1), at(0.4), at(0.9)) - 0.5).abs() < 1e-12);
     }
 
     #[test]

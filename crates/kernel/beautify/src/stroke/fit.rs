@@ -4,7 +4,7 @@ use glam::DVec3;
 use midair_curve::Spline;
 use nalgebra::DVector;
 
-use super::measure::Measure;
+use super::measure::{Along, Measure};
 
 /// What a curve goes through.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,25 +39,34 @@ pub struct Fitted {
 
 /// Samples of the curvature per segment (§4.2.2 asks for one at least).
 const SAMPLES: usize = 10;
-const MOST_STEPS: usize = 60;
-/// No tangent is longer than so many chords of its segment.
-const MOST_CHORDS: f64 = 4.0;
+/// A magnitude is between these, as shares of the chord of its segment: a tangent runs the stroke's own way and
+/// never outgrows its segment.
+const ROOM: (f64, f64) = (0.002, 4.0);
 /// Tangent magnitudes to begin with, as shares of the chords; the first is the paper's.
 const STARTS: [f64; 4] = [1.0 / 3.0, 0.55, 0.2, 0.9];
 /// Steps from each start, after which only the best …
-const FIRST_STEPS: usize = 6;
-/// … so many go on.
+const FIRST_STEPS: usize = 5;
+/// … so many go on, for so many steps at most.
 const LAST: usize = 2;
+const MOST_STEPS: usize = 40;
+/// What is tried of one magnitude alone when the best has come to rest, as shares of the chord …
+const JUMPS: [f64; 7] = [0.002, 0.08, 0.2, 0.35, 0.55, 0.85, 1.3];
+/// The same where corners are in the way, as multiples of it …
+const NUDGES: [f64; 6] = [0.75, 0.9, 0.97, 1.03, 1.1, 1.3];
+/// … and how often.
+const ROUNDS: usize = 3;
 
-/// The curve through `curve`'s points of least Σ (cᵢ − cᵢ₊₁)² (Eq. 9), begun at a third of each
-/// chord as the paper does. A curve without segments is empty.
+/// The curve through `curve`'s points of least Σ (cᵢ − cᵢ₊₁)² (Eq. 9). Begun at a third of each chord as the paper
+/// does, and elsewhere; it is not worse than what any of the starts leads to. Magnitudes stay above zero: the paper
+/// begins where no cusps exist, and below zero a tangent runs against the stroke's own sense. A curve without segments is
+/// empty.
 pub fn fit(curve: &Curve) -> Fitted {
     let count = (SAMPLES * curve.segments() + SAMPLES).max(12);
-    fit_with(curve, count)
+    fit_with(curve, count, Along::Curve)
 }
 
-/// The same with `count` samples of the curvature over the whole curve.
-pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
+/// The same with `count` samples of the curvature over the whole curve, and a choice of what they lie on.
+pub fn fit_with(curve: &Curve, count: usize, along: Along) -> Fitted {
     let chords: Vec<f64> = curve
         .points
         .windows(2)
@@ -71,7 +80,7 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
             steps: 0,
         };
     }
-    let mut measure = Measure::new(curve, count.max(6));
+    let mut measure = Measure::new(curve, count.max(6), Along::Curve);
     let free: Vec<bool> = (0..curve.segments())
         .map(|i| !is_straight(curve, i))
         .collect();
@@ -82,30 +91,52 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
     // Begun as the paper does and in other ways: the valleys are many, and the nearest is not the deepest.
     let mut tries: Vec<Descent> = STARTS
         .iter()
-        .map(|share| {
-            let share = |i: usize| if free[i] { *share } else { 1.0 / 3.0 };
+        .map(|&share| {
+            let share = |i: usize| if free[i] { share } else { 1.0 / 3.0 };
             let x = chords
                 .iter()
                 .enumerate()
                 .flat_map(|(i, c)| [c * share(i); 2]);
-            let x = x.collect();
-            let mut descent = Descent::new(x, &mut measure);
-            descent.run(FIRST_STEPS, &room, &mut measure);
-            descent
+            x.collect()
         })
+        .chain([even(curve)])
+        .map(|x: Vec<f64>| Descent::new(x, &mut measure))
         .collect();
+    for descent in &mut tries {
+        descent.run(FIRST_STEPS, &room, &mut measure);
+    }
     tries.sort_by(|a, b| a.value.total_cmp(&b.value));
     tries.truncate(LAST);
     for descent in &mut tries {
         descent.run(MOST_STEPS, &room, &mut measure);
     }
     tries.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let mut best = tries.swap_remove(0);
+    for _ in 0..ROUNDS {
+        if !best.jump(&room, &mut measure) {
+            break;
+        }
+    }
+    if along == Along::Chords {
+        // Their corners are thresholds for a descent: it goes on from where the smooth curve came to rest.
+        measure = Measure::new(curve, count.max(6), along);
+        best = Descent {
+            steps: best.steps,
+            ..Descent::new(best.x, &mut measure)
+        };
+        best.run(MOST_STEPS, &room, &mut measure);
+        for _ in 0..ROUNDS {
+            if !best.nudge(&room, &mut measure) {
+                break;
+            }
+        }
+    }
     let Descent {
         mut x,
         value,
         steps,
         ..
-    } = tries.swap_remove(0);
+    } = best;
     for (i, x) in x.chunks_mut(2).enumerate() {
         if let Some(arc) = arc(curve, i).filter(|a| x.iter().all(|m| (m / a - 1.0).abs() < 0.02)) {
             x.fill(arc);
@@ -117,6 +148,14 @@ pub fn fit_with(curve: &Curve, count: usize) -> Fitted {
         variation: value,
         steps,
     }
+}
+
+/// A curve not far from the fair one, in a fraction of the time: enough to see where it strays.
+pub(super) fn rough(curve: &Curve) -> Spline {
+    if curve.segments() == 0 {
+        return Spline::default();
+    }
+    super::spline(curve, &even(curve))
 }
 
 /// Whether a segment is straight whatever its magnitudes: they would run it past its ends and back.
@@ -131,6 +170,21 @@ struct Room<'a> {
     chords: &'a [f64],
     /// Segments whose magnitudes mean something.
     free: &'a [bool],
+}
+
+impl Room<'_> {
+    fn clamp(&self, i: usize, x: f64) -> f64 {
+        let chord = self.chords[i / 2];
+        x.clamp(ROOM.0 * chord, ROOM.1 * chord)
+    }
+
+    /// Whether a magnitude would leave its room downhill.
+    fn holds(&self, i: usize, x: f64, gradient: f64) -> bool {
+        let share = x / self.chords[i / 2];
+        !self.free[i / 2]
+            || share <= ROOM.0 * (1.0 + 1e-9) && gradient > 0.0
+            || share >= ROOM.1 * (1.0 - 1e-9) && gradient < 0.0
+    }
 }
 
 /// Levenberg–Marquardt from one start, to be gone on with.
@@ -155,11 +209,19 @@ impl Descent {
 
     fn run(&mut self, most: usize, room: &Room, measure: &mut Measure) {
         let mut trial = self.x.clone();
+        let most = self.steps + most;
         while self.steps < most && !self.done {
             self.steps += 1;
-            let (residuals, jacobian) = measure.linearised(&self.x);
-            let matrix = jacobian.tr_mul(&jacobian);
+            let (residuals, mut jacobian) = measure.linearised(&self.x);
             let gradient = jacobian.tr_mul(&residuals);
+            // What stands at the end of its room and would leave it holds still, so that the others step as if it did.
+            for i in 0..trial.len() {
+                if room.holds(i, self.x[i], gradient[i]) {
+                    jacobian.column_mut(i).fill(0.0);
+                }
+            }
+            let gradient = jacobian.tr_mul(&residuals);
+            let matrix = jacobian.tr_mul(&jacobian);
             // A magnitude that says nothing is not moved far.
             let least = 1e-6 * matrix.diagonal().max() + 1e-12;
             let mut gained = None;
@@ -174,10 +236,8 @@ impl Descent {
                     continue;
                 };
                 for i in 0..trial.len() {
-                    // A tangent never turns round and never outgrows its segment.
-                    let chord = room.chords[i / 2];
                     trial[i] = if room.free[i / 2] {
-                        (self.x[i] - step[i]).clamp(0.01 * chord, MOST_CHORDS * chord)
+                        room.clamp(i, self.x[i] - step[i])
                     } else {
                         self.x[i]
                     };
@@ -195,6 +255,62 @@ impl Descent {
             self.done = gained.is_none_or(|g| g < 1e-6);
         }
     }
+
+    /// Tries each magnitude by itself elsewhere on its chord.
+    fn jump(&mut self, room: &Room, measure: &mut Measure) -> bool {
+        self.search(|_, chord| JUMPS.map(|by| by * chord), room, measure)
+    }
+
+    /// Tries each a little shorter and longer.
+    fn nudge(&mut self, room: &Room, measure: &mut Measure) -> bool {
+        self.search(|x, _| NUDGES.map(|by| by * x), room, measure)
+    }
+
+    /// Tries each magnitude by itself elsewhere, and goes on from where that is better. Says whether it was.
+    fn search<const N: usize>(
+        &mut self,
+        there: impl Fn(f64, f64) -> [f64; N],
+        room: &Room,
+        measure: &mut Measure,
+    ) -> bool {
+        let before = self.value;
+        for i in 0..self.x.len() {
+            if !room.free[i / 2] {
+                continue;
+            }
+            let mut best = (self.x[i], self.value);
+            for there in there(self.x[i], room.chords[i / 2]) {
+                let there = room.clamp(i, there);
+                let was = std::mem::replace(&mut self.x[i], there);
+                let value = measure.value(&self.x);
+                if value < best.1 {
+                    best = (there, value);
+                }
+                self.x[i] = was;
+            }
+            (self.x[i], self.value) = best;
+        }
+        if self.value < before {
+            self.done = false;
+            self.damping = 1e-3;
+            self.run(MOST_STEPS, room, measure);
+        }
+        self.value < 0.999 * before
+    }
+}
+
+/// Magnitudes with which each segment by itself bends most evenly (Hobby's velocities, taken about its chord).
+fn even(curve: &Curve) -> Vec<f64> {
+    let ends = curve.points.windows(2).zip(curve.tangents.windows(2));
+    ends.flat_map(|(q, d)| {
+        let chord = q[1] - q[0];
+        let long = chord.length().max(1e-9);
+        let (a, b) = (d[0].dot(chord) / long, d[1].dot(chord) / long);
+        // 2 / (3 (1 + cos)) of the chord is a circular arc where both angles are equal.
+        let velocity = |cos: f64| (2.0 / (3.0 * (1.0 + cos).max(0.2))).min(1.5) * long;
+        [velocity(a), velocity(b)]
+    })
+    .collect()
 }
 
 /// The magnitude with which a segment is rounder than that of least variation, where its ends and

@@ -13,6 +13,7 @@ use midair_curve::{CubicBezier, Polyline, Spline};
 
 pub use fit::{Curve, Fitted, fit, fit_with};
 pub use keypoints::Keypoint;
+pub use measure::Along;
 
 use crate::line::Scaffold;
 
@@ -118,21 +119,31 @@ fn through(
 ) -> (Spline, Vec<Keypoint>) {
     /// Points of the drawing that are taken in at most.
     const MOST: usize = 12;
+    let mut rough = true;
     for round in 0.. {
-        let fitted = fit(&curve_of(&keypoints, closed));
-        let shown = fitted.spline.flattened(16);
+        let curve = curve_of(&keypoints, closed);
+        let spline = if rough {
+            fit::rough(&curve)
+        } else {
+            fit(&curve).spline
+        };
+        let shown = spline.flattened(16);
         let worst = samples
             .iter()
             .enumerate()
             .map(|(i, p)| (i, straight::to_polyline(*p, shown.points())))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((at, off)) = worst else {
-            return (fitted.spline, keypoints);
+            return (spline, keypoints);
         };
         let allowed = reach.max(0.04 * shown.length());
         let place = keypoints.partition_point(|k| k.sample < at);
         if off <= allowed || round >= MOST || keypoints.iter().any(|k| k.sample == at) {
-            return (fitted.spline, keypoints);
+            if rough {
+                rough = false;
+                continue;
+            }
+            return (spline, keypoints);
         }
         keypoints.insert(place, keypoints::free(samples, at));
     }

@@ -116,9 +116,13 @@ fn the_derivative_is_that_of_small_differences() {
     let mut curve = circle(3);
     curve.points[1].z = 0.4;
     curve.closed = false;
-    for closed in [false, true] {
+    for (closed, along) in [
+        (false, Along::Curve),
+        (true, Along::Curve),
+        (false, Along::Chords),
+    ] {
         curve.closed = closed;
-        let mut measure = measure::Measure::new(&curve, 40);
+        let mut measure = measure::Measure::new(&curve, 40, along);
         let x = [0.4, 0.7, 0.5, 0.6, 0.8, 0.45];
         let (r, jacobian) = measure.linearised(&x);
         let gradient = jacobian.tr_mul(&r) * 2.0;
@@ -160,9 +164,9 @@ fn the_fit_never_gets_worse_than_where_it_began() {
                 .windows(2)
                 .flat_map(|q| [q[0].distance(q[1]) / 3.0; 2])
                 .collect();
-            measure::Measure::new(&curve, 100).value(&x)
+            measure::Measure::new(&curve, 100, Along::Curve).value(&x)
         };
-        let fitted = fit_with(&curve, 100);
+        let fitted = fit_with(&curve, 100, Along::Curve);
         assert!(fitted.variation <= begun);
         assert!(fitted.magnitudes.iter().all(|m| m.is_finite() && *m > 0.0));
     }
