@@ -30,7 +30,7 @@ if [ ! -x "$cache/target/release/rbench" ]; then
 fi
 if [ -f "$peers/bench_mvc.py" ] && "$python" -c 'import scipy' 2>/dev/null; then
   cargo build --quiet --manifest-path "$here/../Cargo.toml" -p midair-beautify --example mvc
-  "$python" "$here/mvc.py" --ours "$target/debug/examples/mvc" --peer "$peers/bench_mvc.py"
+  ${PREFIX:-} "$python" "$here/mvc.py" --ours "$target/debug/examples/mvc" --peer "$peers/bench_mvc.py"
 else
   echo "no scipy: fair curves are left out" >&2
 fi

@@ -25,6 +25,7 @@ mod references;
 mod room;
 mod scaffold;
 mod scaffold_flat;
+mod scaffold_session;
 mod sequence;
 mod shapes;
 mod small;

@@ -6,7 +6,7 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use midair_document::{ConstructionLine, DrawnStroke, Edit, Kind, Object, ObjectId, Relation};
 use midair_field::Placement;
-use midair_scaffold::{Ask, SCAFFOLD};
+use midair_scaffold::{Ask, Draft, SCAFFOLD};
 use midair_studio::command::Command;
 use midair_studio::drawing::Drawing;
 use midair_studio::hands::{Action, Pose, Side};
@@ -186,6 +186,38 @@ fn other_readings_are_a_press_away_and_each_is_a_step() {
     assert_eq!(s.lines()[4].raw, [s.lines()[4].a, s.lines()[4].b]);
     s.asked(Ask::Again(1.0));
     assert_eq!(s.lines()[4], best);
+}
+
+#[test]
+fn a_ghost_is_picked_where_it_is_seen_whatever_is_drawn() {
+    let mut s = Studio::drawing();
+    square(&mut s);
+    s.pull(v(-0.19, 0.81, 0.01), v(0.03, 1.22, -0.01));
+    let best = s.lines()[4].clone();
+    let last = |s: &Studio| s.world().resource::<Draft>().last.clone().unwrap();
+    let [was, other] = [0, 1].map(|i| last(&s).places[i].as_vec3());
+    assert!(was.distance(other) > 0.01, "{was} {other}");
+    // Also while the trigger draws strokes.
+    s.draws(Draws::Stroke);
+    s.reach(R, other);
+    assert_eq!(s.world().resource::<Draft>().over, Some(1));
+    s.frames(3);
+    s.click(R, Action::Act);
+    assert_eq!(last(&s).chosen, 1, "{:?}", s.warnings());
+    assert_ne!(s.lines()[4], best);
+    // The best is a ghost now.
+    s.draws(Draws::Line);
+    let place = last(&s).places[0].as_vec3();
+    s.reach(R, place);
+    s.click(R, Action::Act);
+    assert_eq!(s.lines()[4], best);
+    assert_eq!((s.lines().len(), s.strokes().len()), (5, 0));
+    // Long after it is an ordinary place again.
+    let place = last(&s).places[1].as_vec3();
+    s.reach(R, v(1.0, 1.5, 0.5));
+    s.frames(90 * 7);
+    s.reach(R, place);
+    assert_eq!(s.world().resource::<Draft>().over, None);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use midair_studio::hands::Hands;
 use midair_studio::plane::WorkPlane;
 use midair_studio::tools::Aim;
 
+use crate::ghost::ghosts;
 use crate::phase::{Draft, Phase};
 
 /// More directions than this crowd the view.
@@ -31,6 +32,8 @@ pub(crate) fn aim(
         next.points = drawing.keypoints().map(|p| p.as_vec3()).collect();
         let ends = |l: &midair_studio::drawing::SceneLine| (l.a.as_vec3(), l.b.as_vec3());
         next.lines = drawing.lines().iter().map(ends).collect();
+        next.points
+            .extend(ghosts(&draft).map(|g| g.place.as_vec3()));
     }
     if let Phase::Line { from, .. } = draft.phase
         && hands.pixel > 0.0

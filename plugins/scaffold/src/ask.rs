@@ -41,6 +41,8 @@ pub enum Ask {
     },
     /// The second of two lines meets the first at so many degrees; it turns about the end that is nearer to it.
     Between(f64),
+    /// From now on lines meet others at so many degrees as well, up to a right angle, where they almost do; 0 for none.
+    OwnAngle(f64),
     /// A tick mark on a line, at a share of its length.
     Tick {
         /// The line.
@@ -58,6 +60,8 @@ pub enum Ask {
     Group,
     /// The whole history of the drawing goes to a file: into the work folder where none is named.
     History(Option<PathBuf>),
+    /// What can be seen of the drawing goes to a sheet of four views, an SVG, likewise.
+    Sheet(Option<PathBuf>),
 }
 
 impl Ask {
@@ -112,7 +116,8 @@ pub(crate) fn ask(
             }
             Ask::Again(strength) => {
                 let set = settings.scaffold.sound();
-                again(&ids, strength, &set, &drawing, &mut project, &mut notices);
+                let set = (&set, draft.own_angle);
+                again(&ids, strength, set, &drawing, &mut project, &mut notices);
             }
             Ask::Tick { id, at } => {
                 let fits = at > 0.0 && at < 1.0;
@@ -128,6 +133,14 @@ pub(crate) fn ask(
             }
             Ask::Group => group(&mut project, &mut notices),
             Ask::History(path) => history::start(path, &project, &mut writing),
+            Ask::Sheet(path) => history::start_sheet(path, &project, &mut writing),
+            Ask::OwnAngle(degrees) => {
+                if (0.0..=90.0).contains(&degrees) {
+                    draft.own_angle = degrees;
+                } else {
+                    notices.warn("An angle of one's own is from 0° (none) to 90°.");
+                }
+            }
             Ask::Between(degrees) => {
                 let between = between(&ids, degrees, &project);
                 commit("Set angle", between, &mut project, &mut notices);
@@ -179,7 +192,7 @@ fn commit(
 fn again(
     ids: &[ObjectId],
     strength: f64,
-    set: &ScaffoldSettings,
+    set: (&ScaffoldSettings, f64),
     drawing: &Drawing,
     project: &mut Project,
     notices: &mut Notices,
@@ -234,7 +247,7 @@ fn readings_again(
     id: ObjectId,
     object: &Object,
     strength: f64,
-    set: &ScaffoldSettings,
+    (set, own_angle): (&ScaffoldSettings, f64),
     drawing: &Drawing,
 ) -> Option<(Vec<Reading>, bool)> {
     let strength = if strength.is_finite() && strength > 0.0 {
@@ -252,6 +265,7 @@ fn readings_again(
                 angle: line.reading.angle,
                 length: line.reading.length,
                 vertical: set.vertical,
+                own_angle: own_angle.to_radians(),
                 part_turn: if set.part_turns {
                     line.reading.angle
                 } else {

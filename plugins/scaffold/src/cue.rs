@@ -41,13 +41,20 @@ pub(crate) fn hints(
                 Draws::Line => ("line", "draw strokes"),
                 Draws::Stroke => ("stroke", "draw lines"),
             };
+            let over = draft
+                .over
+                .and_then(|i| draft.last.as_ref()?.readings.get(i));
+            let act = match over {
+                Some(reading) => format!("read it as {}", reading.words),
+                None => format!("draw a {what}"),
+            };
             let status = if draft.picked.is_some() {
                 "Scaffold: press on the second point".to_owned()
             } else {
                 format!("Scaffold: {what}s, {corrected}")
             };
             next.begin(status)
-                .say(Action::Act, format!("draw a {what}"))
+                .say(Action::Act, act)
                 .say(Action::Up, other)
                 .say(
                     Action::Down,

@@ -1,5 +1,6 @@
 //! What hands draw.
 
+use bevy::ecs::system::SystemParam;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use midair_beautify::Line;
@@ -12,10 +13,11 @@ use midair_studio::plane::WorkPlane;
 use midair_studio::project::Project;
 use midair_studio::settings::{Draws, Settings};
 
+use crate::ghost;
 use crate::lift::lift;
 use crate::make;
 use crate::phase::{Draft, Options, PIXELS, Phase, Sample};
-use crate::read::{self, Scene};
+use crate::read::{self, Reading, Scene};
 
 /// Shorter than this, in physical metres and in pixels, a line is a tick mark or the pick of a point.
 const SHORT: (f64, f64) = (0.03, 7.0);
@@ -74,62 +76,34 @@ pub(crate) fn turn(
     }
 }
 
-/// What of the world drawing is about.
-type World<'w> = (
-    Res<'w, Settings>,
-    Res<'w, Drawing>,
-    Res<'w, WorkPlane>,
-    Res<'w, Time>,
-);
+/// What drawing is about.
+#[derive(SystemParam)]
+pub(crate) struct Room<'w> {
+    hands: ResMut<'w, Hands>,
+    settings: Res<'w, Settings>,
+    drawing: Res<'w, Drawing>,
+    plane: Res<'w, WorkPlane>,
+    time: Res<'w, Time>,
+    project: ResMut<'w, Project>,
+    notices: ResMut<'w, Notices>,
+}
 
 /// The trigger.
-pub(crate) fn draw(
-    mut hands: ResMut<Hands>,
-    (settings, drawing, plane, time): World,
-    mut draft: ResMut<Draft>,
-    mut project: ResMut<Project>,
-    mut notices: ResMut<Notices>,
-) {
+pub(crate) fn draw(mut room: Room, mut draft: ResMut<Draft>) {
     let draft = &mut *draft;
-    if let Some(last) = &mut draft.last {
-        last.age += time.delta_secs();
-    }
+    room.look_back(draft);
     let Some(side) = draft.side() else {
-        begin(&hands, &settings, draft);
+        room.begin(draft);
         return;
     };
-    if hands.pressed(Action::Cancel).is_some() {
+    if room.hands.pressed(Action::Cancel).is_some() {
         draft.phase = Phase::Idle;
         draft.preview = None;
         return;
     }
-    let alt = hands.get(side.other()).held(Action::Act) || hands.get(side).held(Action::Free);
-    let tip = hands.get(side).pose.position.as_dvec3();
-    let step = hands.reach(side, SAMPLE.0, SAMPLE.1);
-    let eye = hands.head.map(|h| h.position.as_dvec3());
-    match &mut draft.phase {
-        Phase::Line {
-            from,
-            to,
-            farthest,
-            raw,
-            ..
-        } => {
-            *to = tip;
-            *farthest = farthest.max(tip.distance(*from));
-            *raw |= alt;
-        }
-        Phase::Stroke { points, raw, .. } => {
-            *raw |= alt;
-            let far = points.last().is_none_or(|p| p.at.distance(tip) >= step);
-            if far && points.len() < MAX_POINTS {
-                points.push(Sample { at: tip, eye });
-            }
-        }
-        Phase::Idle => {}
-    }
-    if hands.get(side).held(Action::Act) {
-        preview(side, &hands, &settings, &drawing, draft);
+    let tip = room.follow(side, draft);
+    if room.hands.get(side).held(Action::Act) {
+        room.preview(side, draft);
         return;
     }
     draft.preview = None;
@@ -147,58 +121,28 @@ pub(crate) fn draw(
                 to,
                 raw,
             };
-            let long = from.distance(to);
-            if long < hands.reach(side, SHORT.0, SHORT.1)
-                && farthest < hands.reach(side, 2.0 * SHORT.0, 2.0 * SHORT.1)
+            if from.distance(to) < room.reach(side, SHORT)
+                && farthest < 2.0 * room.reach(side, SHORT)
             {
-                short(
-                    &gesture,
-                    &hands,
-                    &settings,
-                    &drawing,
-                    draft,
-                    &mut project,
-                    &mut notices,
-                )
+                room.short(&gesture, draft)
             } else {
                 draft.picked = None;
-                line(
-                    &gesture,
-                    &hands,
-                    &settings,
-                    &drawing,
-                    draft,
-                    &mut project,
-                    &mut notices,
-                )
+                room.line(&gesture, draft)
             }
         }
         Phase::Stroke {
             mut points, raw, ..
         } => {
             if points.last().is_some_and(|p| p.at != tip) && points.len() < MAX_POINTS {
+                let eye = room.eye();
                 points.push(Sample { at: tip, eye });
             }
-            let lifted = if hands.pixel > 0.0 && !plane.shown {
-                let keypoints: Vec<DVec3> = drawing.keypoints().collect();
-                lift(&points, &keypoints, PIXELS[1] * f64::from(hands.pixel))
-            } else {
-                points.iter().map(|p| p.at).collect()
-            };
-            stroke(
-                lifted,
-                (side, raw),
-                &hands,
-                &settings,
-                &drawing,
-                draft,
-                &mut project,
-                &mut notices,
-            )
+            room.stroke(&points, (side, raw), draft)
         }
         Phase::Idle => false,
     };
-    hands.pulse(side, if done { Haptic::Done } else { Haptic::Refused });
+    let pulse = if done { Haptic::Done } else { Haptic::Refused };
+    room.hands.pulse(side, pulse);
 }
 
 /// One line that was drawn.
@@ -209,157 +153,223 @@ struct Gesture {
     raw: bool,
 }
 
-fn begin(hands: &Hands, settings: &Settings, draft: &mut Draft) {
-    for (side, hand) in hands.both() {
-        if !hand.pressed(Action::Act) || hand.held(Action::Grab) || !hand.tracked {
-            continue;
+impl Room<'_> {
+    /// Metres of world that are so much of the hand, or so many pixels.
+    fn reach(&self, side: Side, (physical, pixels): (f64, f64)) -> f64 {
+        self.hands.reach(side, physical, pixels)
+    }
+
+    fn eye(&self) -> Option<DVec3> {
+        self.hands.head.map(|h| h.position.as_dvec3())
+    }
+
+    /// What was drawn last grows old, but not while a hand is at one of its ghosts.
+    fn look_back(&self, draft: &mut Draft) {
+        let over = Side::BOTH.into_iter().find_map(|side| {
+            let hand = self.hands.get(side);
+            let tip = hand.pose.position.as_dvec3();
+            let near = self.reach(side, ghost::PICK);
+            hand.tracked.then(|| ghost::at(draft, tip, near)).flatten()
+        });
+        if draft.over != over {
+            draft.over = over;
         }
-        let at = hand.pose.position.as_dvec3();
-        draft.phase = match settings.scaffold.draws {
-            Draws::Line => Phase::Line {
-                side,
-                from: at,
-                to: at,
-                farthest: 0.0,
-                raw: false,
-            },
-            Draws::Stroke => Phase::Stroke {
-                side,
-                points: vec![Sample {
-                    at,
-                    eye: hands.head.map(|h| h.position.as_dvec3()),
-                }],
-                raw: false,
-            },
-        };
-        return;
-    }
-}
-
-/// What the elastic line would become if it were let go now.
-fn preview(side: Side, hands: &Hands, settings: &Settings, drawing: &Drawing, draft: &mut Draft) {
-    draft.preview = match draft.phase {
-        Phase::Line { from, to, raw, .. }
-            if !raw
-                && settings.scaffold.auto
-                && from.distance(to) >= hands.reach(side, SHORT.0, SHORT.1) =>
-        {
-            let options = Options::of(&settings.scaffold, hands, side);
-            let scene = Scene::of(drawing, &[]);
-            read::best_line(&Line::new(from, to), &scene, &options.line)
+        if let Some(last) = draft.last.as_mut().filter(|_| over.is_none()) {
+            last.age += self.time.delta_secs();
         }
-        _ => None,
-    };
-}
-
-fn line(
-    gesture: &Gesture,
-    hands: &Hands,
-    settings: &Settings,
-    drawing: &Drawing,
-    draft: &mut Draft,
-    project: &mut Project,
-    notices: &mut Notices,
-) -> bool {
-    let options = Options::of(&settings.scaffold, hands, gesture.side);
-    let drawn = Line::new(gesture.from, gesture.to);
-    let (readings, refused) = read::line(&drawn, &Scene::of(drawing, &[]), &options.line);
-    let raw = gesture.raw || !settings.scaffold.auto;
-    if refused && !raw {
-        notices.info(
-            "The line stays as drawn: correcting it would have moved it farther than a hand errs. \
-             Zoom in, or choose another reading.",
-        );
     }
-    let chosen = if raw { readings.len() - 1 } else { 0 };
-    make::add(readings, chosen, drawing, project, notices, draft)
-}
 
-#[expect(clippy::too_many_arguments, reason = "what a gesture is about, once")]
-fn stroke(
-    points: Vec<DVec3>,
-    (side, raw): (Side, bool),
-    hands: &Hands,
-    settings: &Settings,
-    drawing: &Drawing,
-    draft: &mut Draft,
-    project: &mut Project,
-    notices: &mut Notices,
-) -> bool {
-    let long: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
-    if points.len() < 2 || long < hands.reach(side, SHORT.0, SHORT.1) * 0.3 {
-        notices.info("That was a point. Hold the trigger and move the hand to draw a stroke.");
-        return false;
-    }
-    let set = settings.scaffold.sound();
-    let options = Options::of(&set, hands, side);
-    let (readings, refused) = read::stroke(
-        &points,
-        set.width,
-        &Scene::of(drawing, &[]),
-        &options.stroke,
-    );
-    let raw = raw || !set.auto;
-    if refused && !raw {
-        notices.info(
-            "The stroke stays as drawn: a fair curve through these points would leave it. \
-             Draw it slower, or with fewer turns between two points.",
-        );
-    }
-    let chosen = if raw { readings.len() - 1 } else { 0 };
-    make::add(readings, chosen, drawing, project, notices, draft)
-}
-
-/// A press on one spot, or nearly: a tick mark across a line, or one of two points that a line is to join.
-fn short(
-    gesture: &Gesture,
-    hands: &Hands,
-    settings: &Settings,
-    drawing: &Drawing,
-    draft: &mut Draft,
-    project: &mut Project,
-    notices: &mut Notices,
-) -> bool {
-    let side = gesture.side;
-    let reach = hands.reach(side, PICK.0, PICK.1);
-    let near = |p: &DVec3| p.distance(gesture.to).min(p.distance(gesture.from));
-    let key = drawing
-        .keypoints()
-        .filter(|p| near(p) < reach)
-        .min_by(|a, b| near(a).total_cmp(&near(b)));
-    let crossed = crossed(gesture, drawing, reach);
-    let clicked = gesture.from.distance(gesture.to) < hands.reach(side, CLICK.0, CLICK.1);
-    let second = key
-        .or(crossed.map(|c| c.2))
-        .or(clicked.then_some(gesture.to));
-    match (draft.picked.take(), second) {
-        (Some(first), Some(second)) if first.distance(second) > 1e-6 => {
-            let between = Gesture {
-                from: first,
-                to: second,
-                ..*gesture
+    fn begin(&self, draft: &mut Draft) {
+        for (side, hand) in self.hands.both() {
+            if !hand.pressed(Action::Act) || hand.held(Action::Grab) || !hand.tracked {
+                continue;
+            }
+            let at = hand.pose.position.as_dvec3();
+            draft.phase = match self.settings.scaffold.draws {
+                Draws::Line => Phase::Line {
+                    side,
+                    from: at,
+                    to: at,
+                    farthest: 0.0,
+                    raw: false,
+                },
+                Draws::Stroke => Phase::Stroke {
+                    side,
+                    points: vec![Sample {
+                        at,
+                        eye: self.eye(),
+                    }],
+                    raw: false,
+                },
             };
-            return line(&between, hands, settings, drawing, draft, project, notices);
+            return;
         }
-        (Some(_), Some(_)) => {
-            notices.info("The same point twice: nothing is picked now.");
+    }
+
+    /// The line or stroke goes on to where the tip is; says where that is.
+    fn follow(&self, side: Side, draft: &mut Draft) -> DVec3 {
+        let hands = &self.hands;
+        let alt = hands.get(side.other()).held(Action::Act) || hands.get(side).held(Action::Free);
+        let tip = hands.get(side).pose.position.as_dvec3();
+        match &mut draft.phase {
+            Phase::Line {
+                from,
+                to,
+                farthest,
+                raw,
+                ..
+            } => {
+                *to = tip;
+                *farthest = farthest.max(tip.distance(*from));
+                *raw |= alt;
+            }
+            Phase::Stroke { points, raw, .. } => {
+                *raw |= alt;
+                let step = self.reach(side, SAMPLE);
+                let far = points.last().is_none_or(|p| p.at.distance(tip) >= step);
+                if far && points.len() < MAX_POINTS {
+                    let eye = self.eye();
+                    points.push(Sample { at: tip, eye });
+                }
+            }
+            Phase::Idle => {}
+        }
+        tip
+    }
+
+    /// What the elastic line would become if it were let go now.
+    fn preview(&self, side: Side, draft: &mut Draft) {
+        draft.preview = match draft.phase {
+            Phase::Line { from, to, raw, .. }
+                if !raw
+                    && self.settings.scaffold.auto
+                    && from.distance(to) >= self.reach(side, SHORT) =>
+            {
+                let options =
+                    Options::of(&self.settings.scaffold, &self.hands, side).and_at(draft.own_angle);
+                let scene = Scene::of(&self.drawing, &[]);
+                read::best_line(&Line::new(from, to), &scene, &options.line)
+            }
+            _ => None,
+        };
+    }
+
+    fn line(&mut self, gesture: &Gesture, draft: &mut Draft) -> bool {
+        let options =
+            Options::of(&self.settings.scaffold, &self.hands, gesture.side).and_at(draft.own_angle);
+        let drawn = Line::new(gesture.from, gesture.to);
+        let (readings, refused) = read::line(&drawn, &Scene::of(&self.drawing, &[]), &options.line);
+        let raw = gesture.raw || !self.settings.scaffold.auto;
+        if refused && !raw {
+            self.notices.info(
+                "The line stays as drawn: correcting it would have moved it farther than a hand errs. \
+                 Zoom in, or choose another reading.",
+            );
+        }
+        self.add(readings, raw, draft)
+    }
+
+    fn stroke(&mut self, points: &[Sample], (side, raw): (Side, bool), draft: &mut Draft) -> bool {
+        let points: Vec<DVec3> = if self.hands.pixel > 0.0 && !self.plane.shown {
+            let keypoints: Vec<DVec3> = self.drawing.keypoints().collect();
+            lift(points, &keypoints, PIXELS[1] * f64::from(self.hands.pixel))
+        } else {
+            points.iter().map(|p| p.at).collect()
+        };
+        let long: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
+        if points.len() < 2 || long < self.reach(side, SHORT) * 0.3 {
+            if let Some(done) = self.pick_ghost(points.first().copied(), side, draft) {
+                return done;
+            }
+            self.notices
+                .info("That was a point. Hold the trigger and move the hand to draw a stroke.");
             return false;
         }
-        _ => {}
-    }
-    match (key, crossed) {
-        (Some(point), _) => {
-            draft.picked = Some(point);
-            notices.info("Press on a second point: a line joins the two.");
-            true
-        }
-        (None, Some((id, at, _))) => tick(id, at, project, notices),
-        (None, None) => {
-            notices.info(
-                "Too short for a line. Across a line it is a tick mark, on a keypoint it picks that; \
-                 otherwise hold the trigger and pull.",
+        let set = self.settings.scaffold.sound();
+        let options = Options::of(&set, &self.hands, side);
+        let scene = Scene::of(&self.drawing, &[]);
+        let (readings, refused) = read::stroke(&points, set.width, &scene, &options.stroke);
+        let raw = raw || !set.auto;
+        if refused && !raw {
+            self.notices.info(
+                "The stroke stays as drawn: a fair curve through these points would leave it. \
+                 Draw it slower, or with fewer turns between two points.",
             );
-            false
+        }
+        self.add(readings, raw, draft)
+    }
+
+    fn add(&mut self, readings: Vec<Reading>, raw: bool, draft: &mut Draft) -> bool {
+        let chosen = if raw { readings.len() - 1 } else { 0 };
+        let (project, notices) = (&mut self.project, &mut self.notices);
+        make::add(readings, chosen, &self.drawing, project, notices, draft)
+    }
+
+    /// A press at the place of a ghost makes it what was drawn; says whether it did, where there is one.
+    fn pick_ghost(&mut self, at: Option<DVec3>, side: Side, draft: &mut Draft) -> Option<bool> {
+        let reach = self.reach(side, ghost::PICK);
+        let reading = ghost::at(draft, at?, reach)?;
+        draft.picked = None;
+        Some(make::choose(
+            reading,
+            &mut self.project,
+            &mut self.notices,
+            draft,
+        ))
+    }
+
+    /// A press on one spot, or nearly: a tick mark across a line, or one of two points that a line is to join.
+    fn short(&mut self, gesture: &Gesture, draft: &mut Draft) -> bool {
+        let side = gesture.side;
+        let clicked = gesture.from.distance(gesture.to) < self.reach(side, CLICK);
+        if clicked
+            && draft.picked.is_none()
+            && let Some(done) = self.pick_ghost(Some(gesture.from), side, draft)
+        {
+            return done;
+        }
+        let reach = self.reach(side, PICK);
+        let near = |p: &DVec3| p.distance(gesture.to).min(p.distance(gesture.from));
+        let key = self
+            .drawing
+            .keypoints()
+            .filter(|p| near(p) < reach)
+            .min_by(|a, b| near(a).total_cmp(&near(b)));
+        let crossed = crossed(gesture, &self.drawing, reach);
+        let second = key
+            .or(crossed.map(|c| c.2))
+            .or(clicked.then_some(gesture.to));
+        match (draft.picked.take(), second) {
+            (Some(first), Some(second)) if first.distance(second) > 1e-6 => {
+                let between = Gesture {
+                    from: first,
+                    to: second,
+                    ..*gesture
+                };
+                return self.line(&between, draft);
+            }
+            (Some(_), Some(_)) => {
+                self.notices
+                    .info("The same point twice: nothing is picked now.");
+                return false;
+            }
+            _ => {}
+        }
+        match (key, crossed) {
+            (Some(point), _) => {
+                draft.picked = Some(point);
+                self.notices
+                    .info("Press on a second point: a line joins the two.");
+                true
+            }
+            (None, Some((id, at, _))) => tick(id, at, &mut self.project, &mut self.notices),
+            (None, None) => {
+                self.notices.info(
+                    "Too short for a line. Across a line it is a tick mark, on a keypoint it picks that; \
+                     otherwise hold the trigger and pull.",
+                );
+                false
+            }
         }
     }
 }

@@ -12,18 +12,43 @@ use midair_studio::notice::Notices;
 use midair_studio::project::Project;
 use serde_json::{Value, json};
 
-/// A history that is being written.
+use crate::sheet::sheet;
+
+/// A history or a sheet that is being written.
 #[derive(Resource, Default)]
 pub struct Writing(Option<Task<Result<String, String>>>);
 
 /// Starts writing; the file is named by the project where no name is given.
 pub(crate) fn start(path: Option<PathBuf>, project: &Project, writing: &mut Writing) {
-    let path = path.unwrap_or_else(|| {
-        let name = format!("{} history.json", project.title());
-        project.work_folder().join(name)
-    });
+    let path = named(path, "history.json", project);
     let past = project.history().past();
-    writing.0 = Some(IoTaskPool::get().spawn(async move { write(&path, &past) }));
+    writing.0 = Some(IoTaskPool::get().spawn(async move {
+        let text = serde_json::to_string_pretty(&told(&past)).unwrap_or_default();
+        let steps = past.len().saturating_sub(1);
+        write(&path, &(text + "\n"), &format!("{steps} steps are"))
+    }));
+}
+
+/// The same for the drawing on a sheet.
+pub(crate) fn start_sheet(path: Option<PathBuf>, project: &Project, writing: &mut Writing) {
+    let path = named(path, "sheet.svg", project);
+    let document = project.document().clone();
+    writing.0 = Some(IoTaskPool::get().spawn(async move {
+        match sheet(&document) {
+            Some(text) => write(&path, &text, "Front, side, top and isometric view are"),
+            None => Err(format!(
+                "{} was not written: no line or stroke can be seen. Draw or show some first.",
+                path.display()
+            )),
+        }
+    }));
+}
+
+fn named(path: Option<PathBuf>, ending: &str, project: &Project) -> PathBuf {
+    path.unwrap_or_else(|| {
+        let name = format!("{} {ending}", project.title());
+        project.work_folder().join(name)
+    })
 }
 
 pub(crate) fn collect(mut writing: ResMut<Writing>, mut notices: ResMut<Notices>) {
@@ -39,15 +64,13 @@ pub(crate) fn collect(mut writing: ResMut<Writing>, mut notices: ResMut<Notices>
     }
 }
 
-fn write(path: &Path, past: &[(String, Document)]) -> Result<String, String> {
-    let text = serde_json::to_string_pretty(&told(past)).unwrap_or_default();
+fn write(path: &Path, text: &str, what: &str) -> Result<String, String> {
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         // Writing the file says what is wrong with it, if something is.
         let _ = std::fs::create_dir_all(folder);
     }
-    let steps = past.len().saturating_sub(1);
-    match std::fs::write(path, text + "\n") {
-        Ok(()) => Ok(format!("{steps} steps are in {}.", path.display())),
+    match std::fs::write(path, text) {
+        Ok(()) => Ok(format!("{what} in {}.", path.display())),
         Err(error) => Err(format!(
             "{} was not written: {error}. Choose another place.",
             path.display()

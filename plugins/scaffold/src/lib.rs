@@ -9,12 +9,14 @@ mod ask;
 mod carry;
 mod cue;
 mod draw;
+mod ghost;
 mod history;
 mod lift;
 mod make;
 mod panel;
 mod phase;
 pub mod read;
+mod sheet;
 mod show;
 
 use bevy::gizmos::config::GizmoConfigStore;
@@ -30,6 +32,7 @@ pub use ask::Ask;
 pub use history::told;
 pub use lift::lift;
 pub use phase::{Draft, Last, Options, Phase, Sample};
+pub use sheet::sheet;
 
 /// The tool's name in files.
 pub const SCAFFOLD: ToolId = ToolId::new("scaffold");
@@ -70,7 +73,10 @@ impl Plugin for ScaffoldPlugin {
     }
 }
 
-/// Leaving the tool gives up the line in the hand; what is drawn stays.
+/// Leaving the tool gives up the line in the hand; what is drawn stays, and so does what was asked for.
 fn abort(_: On<ToolChanged>, mut draft: ResMut<Draft>) {
-    *draft = Draft::default();
+    *draft = Draft {
+        own_angle: draft.own_angle,
+        ..Draft::default()
+    };
 }

@@ -38,12 +38,15 @@ pub(crate) fn add(
     if !project.commit_live(step, [Edit::Add { id, object }], notices) {
         return false;
     }
-    draft.last = Some(Last {
+    let mut last = Last {
         id,
         readings,
+        places: Vec::new(),
         chosen,
         age: 0.0,
-    });
+    };
+    last.lay_out();
+    draft.last = Some(last);
     true
 }
 
@@ -82,6 +85,7 @@ pub(crate) fn choose(
         notices.info(format!("Read as {words}."));
         last.chosen = to;
         last.age = 0.0;
+        last.lay_out();
     }
     done
 }
@@ -117,7 +121,9 @@ pub(crate) fn recognise(project: &Project, draft: &mut Draft) {
     }
     let is = |r: &Reading| as_it_stands(&r.kind, object) == object.kind;
     // A length that was set is none of them: it stays what is spoken of.
-    if let Some(chosen) = last.readings.iter().position(is) {
+    let chosen = last.readings.iter().position(is);
+    if let Some(chosen) = chosen.filter(|c| *c != last.chosen) {
         last.chosen = chosen;
+        last.lay_out();
     }
 }

@@ -46,7 +46,7 @@ impl Panel for ScaffoldPanel {
                 ui.separator();
                 self.drawn(ui, settings, project, selection, draft, asks);
                 ui.separator();
-                self.thresholds(ui, settings, asks);
+                self.thresholds(ui, settings, draft.own_angle, asks);
                 ui.separator();
                 ui.horizontal_wrapped(|ui| {
                     if ui.button("Group the scaffold").clicked() {
@@ -57,6 +57,12 @@ impl Panel for ScaffoldPanel {
                         .on_hover_text("Every step, raw and corrected, as JSON in the work folder");
                     if history.clicked() {
                         asks.push(Ask::History(None).command());
+                    }
+                    let sheet = ui
+                        .button("Export sheet")
+                        .on_hover_text("Four views to scale, as SVG in the work folder");
+                    if sheet.clicked() {
+                        asks.push(Ask::Sheet(None).command());
                     }
                 });
             });
@@ -235,7 +241,13 @@ impl ScaffoldPanel {
         );
     }
 
-    fn thresholds(&mut self, ui: &mut Ui, settings: &Settings, asks: &mut Vec<Command>) {
+    fn thresholds(
+        &mut self,
+        ui: &mut Ui,
+        settings: &Settings,
+        own_angle: f64,
+        asks: &mut Vec<Command>,
+    ) {
         let set = &settings.scaffold;
         egui::CollapsingHeader::new("Thresholds")
             .default_open(false)
@@ -288,6 +300,15 @@ impl ScaffoldPanel {
                         asks.push(Settings::command(key, now));
                     }
                 }
+                self.number_ask(
+                    ui,
+                    "An angle of your own",
+                    own_angle,
+                    (0.0, 90.0),
+                    "°",
+                    Ask::OwnAngle,
+                    asks,
+                );
                 ui.weak("Lengths as the hand sees them; on a screen 50 mm are 16 pixels.");
             });
     }

@@ -53,6 +53,8 @@ pub struct Last {
     pub id: ObjectId,
     /// The readings; the last one is what was drawn.
     pub readings: Vec<Reading>,
+    /// Where each of them is picked while it is a ghost, in world metres.
+    pub places: Vec<DVec3>,
     /// Which of them the object is.
     pub chosen: usize,
     /// Seconds since it was drawn or looked at.
@@ -66,6 +68,10 @@ pub struct Draft {
     pub phase: Phase,
     /// What was drawn last.
     pub last: Option<Last>,
+    /// The ghost that a press would pick.
+    pub over: Option<usize>,
+    /// An angle at which lines are to meet others, in degrees, as it was asked for last; 0 for none.
+    pub own_angle: f64,
     /// The first of two points that are picked.
     pub picked: Option<DVec3>,
     /// What the line being drawn would become.
@@ -126,6 +132,7 @@ impl Options {
             } else {
                 0.0
             },
+            own_angle: 0.0,
             vertical: set.vertical,
             metres_per_world: sound(set.distance / line),
         };
@@ -136,6 +143,13 @@ impl Options {
             ..StrokeOptions::default()
         };
         Self { line, stroke }.stronger(set.strength)
+    }
+
+    /// The same with an angle of one's own, in degrees.
+    #[must_use]
+    pub fn and_at(mut self, degrees: f64) -> Self {
+        self.line.own_angle = degrees.to_radians();
+        self
     }
 
     /// The same with thresholds that are so many times as wide.

@@ -13,12 +13,8 @@ use midair_studio::settings::{Draws, RoomKind, Settings};
 use midair_studio::show::Readouts;
 use midair_studio::units;
 
+use crate::ghost::{self, SEEN, ghosts};
 use crate::phase::{Draft, PIXELS, Phase};
-
-/// Ghosts and marks of what was drawn last are seen for so many seconds.
-const SEEN: f32 = 6.0;
-/// More ghosts than this confuse.
-const GHOSTS: usize = 3;
 
 /// The colours of what is only there for the moment.
 struct Pencils {
@@ -48,7 +44,6 @@ pub(crate) fn lines(
     hands: Res<Hands>,
     settings: Res<Settings>,
     drawing: Res<Drawing>,
-    project: Res<Project>,
     draft: Res<Draft>,
 ) {
     let pencils = Pencils::of(settings.look.room);
@@ -91,33 +86,20 @@ pub(crate) fn lines(
         gizmos.sphere(picked.as_vec3(), 0.4 * reach as f32, pencils.accent);
         gizmos.line(picked.as_vec3(), tip, pencils.faint);
     }
-    for (kind, _) in ghosts(&draft, &project) {
-        let faint = pencils.accent.with_alpha(0.45);
-        match kind {
-            Kind::Line(line) => gizmos.line(line.a.as_vec3(), line.b.as_vec3(), faint),
+    let place = hands.reach(side, ghost::PICK.0, ghost::PICK.1) as f32;
+    for ghost in ghosts(&draft) {
+        // The one that a press would pick stands out.
+        let over = draft.over == Some(ghost.reading);
+        let colour = pencils.accent.with_alpha(if over { 1.0 } else { 0.45 });
+        match &ghost.of.kind {
+            Kind::Line(line) => gizmos.line(line.a.as_vec3(), line.b.as_vec3(), colour),
             Kind::Stroke(stroke) => {
-                gizmos.linestrip(stroke.points().iter().map(|p| p.as_vec3()), faint);
+                gizmos.linestrip(stroke.points().iter().map(|p| p.as_vec3()), colour);
             }
             _ => {}
         }
+        gizmos.sphere(ghost.place.as_vec3(), 0.5 * place, colour);
     }
-}
-
-/// The readings that what was drawn last is not, with their numbers, while they can be picked.
-fn ghosts<'a>(draft: &'a Draft, project: &Project) -> Vec<(&'a Kind, usize)> {
-    let last = draft.last.as_ref();
-    let Some(last) = last.filter(|l| l.age < SEEN && draft.phase == Phase::Idle) else {
-        return Vec::new();
-    };
-    if project.document().object(last.id).is_none() {
-        return Vec::new();
-    }
-    let others = last.readings.iter().enumerate();
-    others
-        .filter(|(i, _)| *i != last.chosen)
-        .map(|(i, r)| (&r.kind, i))
-        .take(GHOSTS)
-        .collect()
 }
 
 /// Lengths, angles and the marks of what was kept.
@@ -167,16 +149,14 @@ pub(crate) fn words(
             for object in ids.iter().filter_map(|&id| document.object(id)) {
                 say(object, unit, &mut readouts);
             }
-            for (kind, i) in ghosts(&draft, &project) {
-                let at = match kind {
-                    Kind::Line(line) => line.b,
-                    Kind::Stroke(stroke) => {
-                        let points = stroke.points();
-                        points.get(points.len() / 2).copied().unwrap_or_default()
-                    }
-                    _ => continue,
+            for ghost in ghosts(&draft) {
+                let number = ghost.reading + 1;
+                let text = if draft.over == Some(ghost.reading) {
+                    format!("{number} {}", ghost.of.words)
+                } else {
+                    format!("{number}")
                 };
-                readouts.say(at.as_vec3(), format!("{}", i + 1));
+                readouts.say(ghost.place.as_vec3(), text);
             }
             if let Some(picked) = draft.picked {
                 let tip = hands.get(settings.hands.main()).pose.position.as_dvec3();

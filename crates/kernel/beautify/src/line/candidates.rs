@@ -79,8 +79,8 @@ pub(super) fn candidates(
                     .any(|q| p.distance_squared(*q) < reach_squared)
             })
         };
-        if options.part_turn > 0.0
-            && let Some(cosine) = part_turn(unit.dot(direction), options.part_turn)
+        if (options.part_turn > 0.0 || options.own_angle > 0.0)
+            && let Some(cosine) = part_turn(unit.dot(direction), options)
             && meets()
             && !angles.iter().any(|&d| parallel(d, direction))
         {
@@ -132,12 +132,24 @@ pub(super) fn candidates(
     found
 }
 
-/// The cosine of 60° or 120° where `cosine` is within `angle` of it, or of 30°, 45°, 135° or 150°, which
-/// are meant less often, within a part of that.
-fn part_turn(cosine: f64, angle: f64) -> Option<f64> {
+/// The cosine of 60° or 120° where `cosine` is within the threshold of it, or of 30°, 45°, 135° or 150°, which are meant
+/// less often, within a part of that. An angle of one's own comes before them.
+fn part_turn(cosine: f64, options: &LineOptions) -> Option<f64> {
     const LESS: f64 = 0.55;
     let at = cosine.clamp(-1.0, 1.0).acos();
-    let wholes = [
+    let nearest = |wholes: &mut dyn Iterator<Item = (f64, f64)>| {
+        wholes
+            .map(|(whole, within)| (whole, (whole - at).abs() / within))
+            .filter(|(_, off)| *off < 1.0)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(whole, _)| whole.cos())
+    };
+    let own = [options.own_angle, std::f64::consts::PI - options.own_angle];
+    let mut own = own
+        .into_iter()
+        .filter(|_| options.own_angle > 0.0)
+        .map(|whole| (whole, options.angle));
+    let usual = [
         (60.0, 1.0),
         (120.0, 1.0),
         (45.0, LESS),
@@ -145,15 +157,11 @@ fn part_turn(cosine: f64, angle: f64) -> Option<f64> {
         (30.0, LESS),
         (150.0, LESS),
     ];
-    wholes
+    let mut usual = usual
         .into_iter()
-        .map(|(degrees, share): (f64, f64)| {
-            let whole = degrees.to_radians();
-            (whole, (whole - at).abs() / (angle * share))
-        })
-        .filter(|(_, off)| *off < 1.0)
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(whole, _)| whole.cos())
+        .filter(|_| options.part_turn > 0.0)
+        .map(|(degrees, share): (f64, f64)| (degrees.to_radians(), options.part_turn * share));
+    nearest(&mut own).or_else(|| nearest(&mut usual))
 }
 
 fn is_point(c: &Constraint, p: DVec3) -> bool {

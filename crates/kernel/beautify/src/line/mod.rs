@@ -81,6 +81,9 @@ pub struct LineOptions {
     /// Radians off a sixth or a third of a turn to a line that it meets, and a part of it off 30°, 45°, 135°
     /// and 150°; 0 where only square and parallel lines are meant, as in the paper.
     pub part_turn: f64,
+    /// An angle of one's own at which a line is to meet another, in radians up to a right angle, wanted within
+    /// [`LineOptions::angle`] whatever `part_turn` is; 0 for none.
+    pub own_angle: f64,
     /// Whether the vertical is a direction like those of lines: to be parallel or square to.
     pub vertical: bool,
     /// Physical metres per metre of world: zooming in makes the thresholds finer.
@@ -108,6 +111,7 @@ impl Default for LineOptions {
             angle: 10.0_f64.to_radians(),
             length: 0.25,
             part_turn: 10.0_f64.to_radians(),
+            own_angle: 0.0,
             vertical: true,
             metres_per_world: 1.0,
         }

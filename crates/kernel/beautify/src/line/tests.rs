@@ -25,6 +25,36 @@ fn a_nearly_upright_line_stands_upright() {
 }
 
 #[test]
+fn an_angle_of_ones_own_is_met_and_none_is_not() {
+    let base = Line::new(v(0.0, 0.0, 0.0), v(0.6, 0.0, 0.0));
+    let scaffold = Scaffold {
+        lines: vec![base],
+        ticks: vec![],
+    };
+    let at = |degrees: f64| {
+        let a = degrees.to_radians();
+        Line::new(v(0.01, 0.0, 0.0), v(0.4 * a.cos(), 0.0, 0.4 * a.sin()))
+    };
+    let own = LineOptions {
+        own_angle: 72.0_f64.to_radians(),
+        part_turn: 0.0,
+        ..LineOptions::default()
+    };
+    let angle = |line: Line, options: &LineOptions| {
+        let out = correct_line(&line, &scaffold, options).line;
+        out.direction().unwrap().dot(DVec3::X).acos().to_degrees()
+    };
+    assert!((angle(at(70.0), &own) - 72.0).abs() < 1e-6);
+    // From the other side of the line it is the same angle.
+    assert!((angle(at(106.5), &own) - 108.0).abs() < 1e-6);
+    let none = LineOptions {
+        own_angle: 0.0,
+        ..own
+    };
+    assert!((angle(at(70.0), &none) - 72.0).abs() > 0.5);
+}
+
+#[test]
 fn of_two_keypoints_one_wins_and_the_other_leaves_no_trace() {
     let posts = [
         Line::new(v(0.0, 0.0, 0.0), v(0.0, -1.0, 0.0)),
