@@ -10,6 +10,7 @@ use midair_scaffold::{Ask, Draft, SCAFFOLD};
 use midair_studio::command::Command;
 use midair_studio::drawing::Drawing;
 use midair_studio::hands::{Action, Pose, Side};
+use midair_studio::notice::Notices;
 use midair_studio::objects;
 use midair_studio::project::{Project, Selection};
 use midair_studio::settings::{Draws, LinesShown, Settings};
@@ -68,6 +69,12 @@ impl Studio {
 
     fn last(&self) -> ObjectId {
         self.document().objects().next_back().unwrap().0
+    }
+
+    /// What was said in the last seconds.
+    fn said(&self, part: &str) -> bool {
+        let notices = self.world().resource::<Notices>();
+        notices.recent(3.0).any(|n| n.text.contains(part))
     }
 }
 
@@ -325,6 +332,18 @@ fn a_drawing_is_saved_opened_and_exported_as_it_is() {
     }
     let text = std::fs::read_to_string(home.join("drawing.obj")).unwrap();
     assert_eq!(text.lines().filter(|l| l.starts_with("l ")).count(), 5);
+    s.asked(Ask::Sheet(Some(home.join("sheet.svg"))));
+    s.settle();
+    for _ in 0..200 {
+        if home.join("sheet.svg").exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        s.frame();
+    }
+    let sheet = std::fs::read_to_string(home.join("sheet.svg")).unwrap();
+    // Four lines and a stroke in each of four views.
+    assert_eq!(sheet.matches("<path").count(), 20);
     s.asked(Ask::History(Some(home.join("history.json"))));
     s.settle();
     for _ in 0..200 {
@@ -409,6 +428,21 @@ fn lengths_and_angles_are_set_and_lines_hidden_and_grouped() {
     let lines = s.lines();
     let d: Vec<DVec3> = lines.iter().map(|l| (l.b - l.a).normalize()).collect();
     assert!((d[0].dot(d[1]).abs() - 45.0_f64.to_radians().cos()).abs() < 1e-9);
+    // An angle of one's own: the next line that meets one at almost it meets it at just that.
+    s.asked(Ask::OwnAngle(72.0));
+    let (foot, base) = (lines[0].a, d[0]);
+    let side = base.cross(DVec3::Y).normalize();
+    let a = 74.5_f64.to_radians();
+    let tip = foot + (base * a.cos() + side * a.sin()) * 0.37;
+    s.pull(foot.as_vec3(), tip.as_vec3());
+    let third = s.lines()[2].clone();
+    let met = (third.b - third.a).normalize().dot(base);
+    assert!(
+        (met - 72.0_f64.to_radians().cos()).abs() < 1e-6,
+        "{third:?}"
+    );
+    s.asked(Ask::OwnAngle(0.0));
+    s.ask(Command::Undo);
     s.asked(Ask::Group);
     assert!(s.document().outermost_group(ids[0]).is_some());
     s.ask(Settings::command("scaffold.lines", LinesShown::Hidden));
@@ -467,6 +501,94 @@ fn what_is_no_drawing_changes_nothing_and_says_so() {
         s.pull(v(1.0, 1.0, 0.0), v(1.5, 1.0, 0.0));
     }
     assert_eq!(s.document().len(), 3);
+}
+
+#[test]
+fn each_bad_input_has_a_clear_outcome() {
+    // A line of no length.
+    let mut s = Studio::drawing();
+    s.reach(R, v(0.0, 1.0, 0.0));
+    s.click(R, Action::Act);
+    assert!(s.document().is_empty() && s.said("Too short for a line"));
+    // Two identical lines.
+    for count in [1, 1] {
+        s.pull(v(0.0, 1.0, 0.0), v(0.4, 1.0, 0.0));
+        assert_eq!(s.lines().len(), count);
+    }
+    assert!(s.said("there already"));
+    // A stroke with one point.
+    let mut s = Studio::drawing();
+    s.draws(Draws::Stroke);
+    s.reach(R, v(0.0, 1.0, 0.0));
+    s.click(R, Action::Act);
+    assert!(s.document().is_empty() && s.said("That was a point"));
+    // Hundreds of points at one spot.
+    s.frames(400);
+    s.scribble(std::iter::repeat_n(v(0.0, 1.0, 0.0), 400));
+    assert!(s.document().is_empty() && s.said("That was a point"));
+    // The same with a stroke going out of it: the hand rests at both ends.
+    let rests = |at: Vec3| std::iter::repeat_n(at, 200);
+    let (from, to) = (v(0.0, 1.0, 0.0), v(0.4, 1.1, 0.0));
+    let way =
+        (0..=40).map(|i| from.lerp(to, i as f32 / 40.0) + v(0.0, 0.002 * (i % 3) as f32, 0.0));
+    s.scribble(rests(from).chain(way).chain(rests(to)));
+    let stroke = &s.strokes()[0];
+    assert!(stroke.raw.len() < 200 && stroke.reading.auto, "{stroke:?}");
+    let points = stroke.points();
+    let ends = [points[0], points[points.len() - 1]];
+    assert!(ends[0].distance(from.as_dvec3()) < 0.02 && ends[1].distance(to.as_dvec3()) < 0.02);
+    // A stroke near no keypoint keeps its own shape.
+    let mut s = Studio::drawing();
+    square(&mut s);
+    s.draws(Draws::Stroke);
+    let drawn: Vec<Vec3> = (0..=120)
+        .map(|i| {
+            let t = 0.05 * i as f32;
+            v(1.0 + 0.06 * t, 1.0 + 0.1 * t.sin(), 0.3)
+        })
+        .collect();
+    s.scribble(drawn.clone());
+    let stroke = &s.strokes()[0];
+    assert!(stroke.reading.auto && stroke.through.iter().all(|k| !k.of_scaffold));
+    for p in stroke.points() {
+        let near = drawn.iter().map(|q| q.as_dvec3().distance(p));
+        assert!(near.fold(f64::INFINITY, f64::min) < 0.04, "{p}");
+    }
+    assert_eq!(s.warnings(), [] as [String; 0]);
+}
+
+#[test]
+fn in_a_scene_in_which_everything_conflicts_no_line_is_thrown_across_the_room() {
+    let mut s = Studio::drawing();
+    let mut edits = Vec::new();
+    for i in 0..120_u64 {
+        // Ends all around both ends, directions all about.
+        let f = i as f64;
+        let off =
+            |k: f64| 0.045 * DVec3::new((k * f).sin(), (1.7 * k * f).cos(), (2.3 * k * f).sin());
+        let line = ConstructionLine::raw(
+            DVec3::new(0.0, 1.0, 0.0) + off(1.3),
+            DVec3::new(0.4, 1.1, 0.0) + off(2.9),
+        );
+        let object = Object::new(format!("Line {i}"), Kind::Line(line)).into();
+        let id = ObjectId(s.document().next_id() + i);
+        edits.push(Edit::Add { id, object });
+    }
+    s.ask(Command::Edit(Edit::Composite {
+        name: "Set up".into(),
+        edits,
+    }));
+    s.settle();
+    let (from, to) = (v(0.0, 1.0, 0.0), v(0.4, 1.1, 0.0));
+    s.pull(from, to);
+    let lines = s.lines();
+    assert_eq!(lines.len(), 121, "{:?}", s.warnings());
+    let drawn = &lines[120];
+    for (end, meant) in [(drawn.a, from), (drawn.b, to)] {
+        assert!(end.distance(meant.as_dvec3()) < 0.11, "{drawn:?}");
+    }
+    // It was corrected, or the raw line was kept and that was said.
+    assert!(drawn.reading.auto && !drawn.kept.is_empty() || s.said("stays as drawn"));
 }
 
 #[test]

@@ -205,10 +205,26 @@ pub fn stroke(
         ("away from the scaffold", &free, options),
         ("straight", &scene.scaffold, &straight),
     ];
+    // A way that could not differ from the first costs a fit and gives nothing.
+    let mut sense = [true; 4];
     for (i, (name, scaffold, options)) in ways.into_iter().enumerate() {
+        if !sense[i] {
+            continue;
+        }
         let Some((kind, say)) = stroke_reading(drawn, width, scaffold, options) else {
             continue;
         };
+        if i == 0 {
+            let inner = kind.through.len().saturating_sub(1);
+            sense = [
+                true,
+                kind.through.iter().any(|k| k.along_line),
+                kind.through.iter().any(|k| k.of_scaffold),
+                !kind.closed
+                    && !(1..inner).any(|k| kind.through[k].of_scaffold)
+                    && say != "straight",
+            ];
+        }
         // What is straightened on purpose may leave what was drawn.
         if i < 3 && far(drawn, &kind, options) {
             refused |= i == 0;
