@@ -221,8 +221,22 @@ fn a_box_with_a_loop_by_mouse_alone_plays_back_to_the_same_bytes() {
     desk.click();
     assert_eq!(desk.chosen(), 1, "{:?}", desk.warnings());
     assert_eq!(desk.all_lines().len(), 13);
-    // Strokes take their depth from what they cross.
+    // Also while strokes are drawn: the best is a ghost now.
     desk.strike_one(KeyCode::ArrowUp);
+    let place = desk
+        .world()
+        .resource::<Draft>()
+        .last
+        .as_ref()
+        .unwrap()
+        .places[0]
+        .as_vec3();
+    let place = desk.pixel(place);
+    desk.glide(place);
+    desk.click();
+    assert_eq!(desk.chosen(), 0, "{:?}", desk.warnings());
+    assert_eq!(desk.document().len(), 13);
+    // Strokes take their depth from what they cross.
     let path = round_the_top(&lines);
     let start = desk.pixel(path[0]);
     desk.glide(start);

@@ -35,6 +35,16 @@ pub(crate) fn aim(
         next.points
             .extend(ghosts(&draft).map(|g| g.place.as_vec3()));
     }
+    // A press on a ghost stays on it: without it the pointer would have another depth.
+    let begun = match &draft.phase {
+        Phase::Line { from, .. } => Some(*from),
+        Phase::Stroke { points, .. } => points.first().map(|p| p.at),
+        Phase::Idle => None,
+    };
+    let of_ghost = |from: &DVec3| {
+        let last = draft.last.as_ref();
+        last.is_some_and(|l| l.places.iter().any(|p| p.distance(*from) < 1e-4))
+    };
     if let Phase::Line { from, .. } = draft.phase
         && hands.pixel > 0.0
         && let Some(head) = hands.head
@@ -48,6 +58,9 @@ pub(crate) fn aim(
             next.lines
                 .push(((from - reach).as_vec3(), (from + reach).as_vec3()));
         }
+    }
+    if let Some(from) = begun.filter(of_ghost) {
+        next.points.push(from.as_vec3());
     }
     if *aim != next {
         *aim = next;

@@ -194,6 +194,8 @@ impl Look {
                 ..default()
             };
         }
+        // Ink has no sheen: a bright room would make it grey.
+        let matt = self.ink.is_some() && self.own.is_none();
         let glow = match (self.touched, self.selected) {
             (true, _) => 0.16,
             (false, true) => 0.07,
@@ -202,9 +204,9 @@ impl Look {
         StandardMaterial {
             base_color: base.with_alpha(alpha),
             emissive: base.to_linear() * glow,
-            perceptual_roughness: info.roughness,
+            perceptual_roughness: if matt { 1.0 } else { info.roughness },
             metallic: info.metallic,
-            reflectance: 0.35,
+            reflectance: if matt { 0.0 } else { 0.35 },
             // A shell that coincides with the result lies on it like a skin.
             depth_bias: if self.ghost { 32.0 } else { 0.0 },
             alpha_mode: if alpha < 1.0 {
