@@ -28,7 +28,7 @@ impl Studio {
         s
     }
 
-    fn pull(&mut self, from: Vec3, to: Vec3) {
+    pub fn pull(&mut self, from: Vec3, to: Vec3) {
         self.reach(R, from);
         self.press(R, Action::Act);
         self.carry_right(to);
@@ -36,7 +36,7 @@ impl Studio {
         self.frame();
     }
 
-    fn scribble(&mut self, points: impl IntoIterator<Item = Vec3>) {
+    pub fn scribble(&mut self, points: impl IntoIterator<Item = Vec3>) {
         let mut points = points.into_iter();
         self.reach(R, points.next().unwrap());
         self.press(R, Action::Act);
@@ -48,7 +48,7 @@ impl Studio {
         self.frame();
     }
 
-    fn draws(&mut self, draws: Draws) {
+    pub fn draws(&mut self, draws: Draws) {
         self.ask(Settings::command("scaffold.draws", draws));
     }
 
@@ -67,7 +67,7 @@ impl Studio {
         all.filter_map(|(_, o)| o.stroke().cloned()).collect()
     }
 
-    fn last(&self) -> ObjectId {
+    pub fn last(&self) -> ObjectId {
         self.document().objects().next_back().unwrap().0
     }
 

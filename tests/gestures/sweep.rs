@@ -16,15 +16,15 @@ use midair_sweep::{Draft, Phase, SWEEP, Solo, SweepAsk, Wires};
 
 use crate::studio::{Studio, near};
 
-const LEFT: Vec3 = Vec3::new(-0.2, 1.0, 0.0);
-const RIGHT: Vec3 = Vec3::new(0.2, 1.0, 0.0);
+pub const LEFT: Vec3 = Vec3::new(-0.2, 1.0, 0.0);
+pub const RIGHT: Vec3 = Vec3::new(0.2, 1.0, 0.0);
 
 impl Studio {
-    fn set<T: serde::Serialize>(&mut self, key: &str, value: T) {
+    pub fn set<T: serde::Serialize>(&mut self, key: &str, value: T) {
         self.ask(Settings::command(&format!("sweep.{key}"), value));
     }
 
-    fn sweeping(&mut self, shape: SweepShape) {
+    pub fn sweeping(&mut self, shape: SweepShape) {
         self.ask(Command::Mode(SWEEP));
         self.set("hands", SweepHands::Two);
         self.set("shape", shape);
@@ -33,7 +33,7 @@ impl Studio {
     }
 
     /// Hands turned by `bend` against each other, so that the curve bows upwards.
-    fn both(&mut self, left: Vec3, right: Vec3, bend: f32) {
+    pub fn both(&mut self, left: Vec3, right: Vec3, bend: f32) {
         let pose = |position, by| Pose {
             position,
             rotation: Quat::from_rotation_z(by),
@@ -41,16 +41,16 @@ impl Studio {
         self.carry(Some(pose(left, bend)), Some(pose(right, -bend)));
     }
 
-    fn swinging(&self) -> &Draft {
+    pub fn swinging(&self) -> &Draft {
         self.world().resource::<Draft>()
     }
 
-    fn swept(&self, id: ObjectId) -> &Sweep {
+    pub fn swept(&self, id: ObjectId) -> &Sweep {
         self.object(id).sweep().expect("a sweep")
     }
 
     /// Forward by so much with the trigger held.
-    fn swipe_away(&mut self, by: Vec3, bend: f32) -> ObjectId {
+    pub fn swipe_away(&mut self, by: Vec3, bend: f32) -> ObjectId {
         let [l, r] = Side::BOTH.map(|s| self.pose(s).position);
         self.press(Side::Right, Action::Act);
         self.both(l + by, r + by, bend);
@@ -63,7 +63,7 @@ impl Studio {
             .0
     }
 
-    fn notices(&self) -> String {
+    pub fn notices(&self) -> String {
         format!("{:?}", self.world().resource::<Notices>())
     }
 }
@@ -517,27 +517,85 @@ fn a_hundred_thousand_clones_cost_a_frame_nothing() {
     let pieces = studio.world().get::<Children>(at).map_or(0, |c| c.len());
     assert!((1..200).contains(&pieces), "{pieces}");
     studio.frames(10);
-    let mut times: Vec<f64> = (0..200)
+    // Frames alone: what the tests look at after each would be measured with it.
+    let mut times: Vec<f64> = (0..400)
         .map(|i| {
             let turn = Quat::from_rotation_y(i as f32 * 0.01);
-            studio.put(
-                Side::Left,
-                Pose {
-                    position: LEFT + Vec3::Y,
-                    rotation: turn,
-                },
-            );
+            let position = LEFT + Vec3::Y;
+            let rotation = turn;
+            studio.put(Side::Left, Pose { position, rotation });
             let before = Instant::now();
-            studio.frame();
+            studio.app_update();
             before.elapsed().as_secs_f64() * 1e3
         })
         .collect();
     times.sort_by(f64::total_cmp);
     println!(
-        "102,400 clones in {pieces} pieces: a frame takes {:.2} ms in the median, {:.2} at the 99th",
-        times[100], times[198]
+        "102,400 clones in {pieces} pieces: a frame takes {:.2} ms in the median, {:.2} at the 99th, {:.2} at most",
+        times[200], times[396], times[399]
     );
-    // Twice what is allowed, for a machine that has other things to do.
-    assert!(times[100] < 8.0, "{}", times[100]);
+    // For a machine that has other things to do.
+    assert!(times[200] < 4.0, "{}", times[200]);
     assert!(studio.warnings().is_empty(), "{:?}", studio.warnings());
+}
+
+/// Table 1 of the paper, as far as the processor is concerned: frames of the whole main schedule while
+/// the last of so many curves is dragged, against frames in which the curve only hangs there.
+#[test]
+fn a_frame_while_sweeping_costs_little_more_than_one_at_rest() {
+    for (count, ribs, clones) in [
+        (48, 271, false),
+        (48, 2131, false),
+        (64, 125, true),
+        (64, 644, true),
+    ] {
+        let mut studio = Studio::new();
+        studio.sweeping(if clones {
+            SweepShape::Clones
+        } else {
+            SweepShape::Surface
+        });
+        studio.set("count", count);
+        studio.set("clones", count);
+        studio.set("spread", true);
+        studio.frames(20);
+        studio.settle();
+        let mut at = 0.0f32;
+        let mut frame = |studio: &mut Studio, by: f32| {
+            at += by;
+            for (side, x) in [(Side::Left, -0.2), (Side::Right, 0.2)] {
+                let position = Vec3::new(x, 1.0 + 0.05 * (at * 9.0).sin(), -at);
+                let rotation = Quat::from_rotation_z(-x * (3.0 + (at * 7.0).sin()));
+                studio.put(side, Pose { position, rotation });
+            }
+            let before = Instant::now();
+            studio.app_update();
+            before.elapsed().as_secs_f64() * 1e3
+        };
+        let median = |mut times: Vec<f64>| {
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
+        };
+        let rest = median((0..200).map(|_| frame(&mut studio, 0.0005)).collect());
+        studio.press(Side::Right, Action::Act);
+        while studio.swinging().ribs.len() < ribs {
+            frame(&mut studio, 0.0101);
+        }
+        let mut bytes = 0;
+        // Slowly: the surface stays about as large as the table says.
+        let sweeping: Vec<f64> = (0..200)
+            .map(|_| {
+                let took = frame(&mut studio, 0.0005);
+                bytes = bytes.max(studio.world().resource::<Wires>().bytes());
+                took
+            })
+            .collect();
+        let sweeping = median(sweeping);
+        let made = studio.swinging().ribs.len();
+        println!(
+            "n = {count}, {made} curves, clones: {clones}: a frame of the main schedule takes {sweeping:.3} ms while sweeping, {rest:.3} at rest; {bytes} bytes sent at most"
+        );
+        assert!(made < ribs + 40, "{made}");
+        assert!(sweeping < rest + 2.0, "{sweeping} {rest}");
+    }
 }

@@ -169,6 +169,10 @@ impl Document {
                 id: *id,
                 dimmed: std::mem::replace(&mut self.change(*id)?.dimmed, *dimmed),
             },
+            Edit::SetLinks { id, links } => Edit::SetLinks {
+                id: *id,
+                links: std::mem::replace(&mut self.change(*id)?.links, links.clone()),
+            },
             Edit::SetColour { id, colour } => Edit::SetColour {
                 id: *id,
                 colour: std::mem::replace(&mut self.change(*id)?.colour, *colour),

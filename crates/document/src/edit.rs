@@ -6,7 +6,7 @@ use midair_field::{Node, Op, Placement, Recipe, Skeleton, Stroke};
 use serde::{Deserialize, Serialize};
 
 use crate::recipes::walk;
-use crate::{Colour, Dials, Group, GroupId, Kind, Layer, LayerId, Object, ObjectId};
+use crate::{Colour, Dials, Group, GroupId, Kind, Layer, LayerId, Link, Object, ObjectId};
 
 /// A change to the document: small, serialisable, and undone by another edit.
 ///
@@ -104,6 +104,13 @@ pub enum Edit<R = Recipe> {
         id: ObjectId,
         /// Whether it is faint.
         dimmed: bool,
+    },
+    /// Says what an object's shape follows from now on.
+    SetLinks {
+        /// Which.
+        id: ObjectId,
+        /// All of its links.
+        links: Vec<Link>,
     },
     /// Gives an object a colour, or takes it.
     SetColour {
@@ -276,6 +283,7 @@ impl<R: Clone> Edit<R> {
             SetLocked { id, locked } => SetLocked { id, locked },
             SetFresh { id, fresh } => SetFresh { id, fresh },
             SetDimmed { id, dimmed } => SetDimmed { id, dimmed },
+            SetLinks { id, links } => SetLinks { id, links },
             SetColour { id, colour } => SetColour { id, colour },
             SetMaterial {
                 id,
@@ -332,6 +340,8 @@ impl Edit {
             Self::SetFresh { .. } => "Settle",
             Self::SetDimmed { dimmed: true, .. } => "Dim",
             Self::SetDimmed { .. } => "Undim",
+            Self::SetLinks { links, .. } if links.is_empty() => "Free",
+            Self::SetLinks { .. } => "Follow",
             Self::SetColour { .. } => "Colour",
             Self::SetMaterial { .. } => "Material",
             Self::SetLayer { .. } => "Change layer",
@@ -369,6 +379,7 @@ impl Edit {
             Self::SetLayer { id, .. } => (8, id.0),
             Self::SetGroup { id, .. } => (9, id.0),
             Self::SetDimmed { id, .. } => (12, id.0),
+            Self::SetLinks { id, .. } => (13, id.0),
             Self::SetPending { .. } => (10, 0),
             Self::SetStep { .. } => (11, 0),
             _ => return None,
@@ -386,8 +397,10 @@ impl Edit {
                         + object.name.len()
                         + object.material.as_ref().map_or(0, String::len)
                         + dial_bytes(&object.dials)
+                        + size_of_val(&object.links[..])
                         + kind_bytes(&object.kind, seen)
                 }
+                Self::SetLinks { links, .. } => size_of_val(&links[..]),
                 Self::SetKind { kind, .. } => kind_bytes(kind, seen),
                 Self::SetStrokes { strokes, .. } => {
                     let one = |stroke: &Stroke| {

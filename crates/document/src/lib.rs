@@ -48,6 +48,6 @@ pub use journal::{
     Journal, JournalError, MeshSpool, Recoverable, Recovered, Recovery, RecoveryError,
 };
 pub use mesh_store::MeshStore;
-pub use object::{Colour, Dials, Group, Kind, Layer, Object, Reference};
+pub use object::{Colour, Dials, Group, Kind, Layer, Link, Object, Reference};
 pub use recipes::{RecipeFault, TableError};
 pub use stored::{FORMAT, TextError};

@@ -6,7 +6,7 @@ use midair_mesh::{Aabb, MeshHash};
 use serde::{Deserialize, Serialize};
 
 use crate::drawing::{ConstructionLine, DrawnStroke, around};
-use crate::{GroupId, ImageHash, LayerId};
+use crate::{GroupId, ImageHash, LayerId, ObjectId};
 
 /// One thing in the scene.
 ///
@@ -48,6 +48,20 @@ pub struct Object<R = Recipe> {
     /// What is set of the material, by the names it has for it; what is missing here is as usual.
     #[serde(default, skip_serializing_if = "Dials::is_empty")]
     pub dials: Dials,
+    /// What its shape follows, beside the shape it has now.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<Link>,
+}
+
+/// A part of an object follows another object: a sweep its rail, a skeleton its stroke. The shape is as
+/// it last came to be; where the source is gone it stays so. Whoever made the link brings it after
+/// its source, in the step that changes that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Link {
+    /// What it follows; it may be gone.
+    pub source: ObjectId,
+    /// Which part follows, as the tool counts that made it.
+    pub part: u32,
 }
 
 /// What a person sets of a material: numbers by name.
@@ -77,6 +91,7 @@ impl<R> Object<R> {
             colour: None,
             material: None,
             dials: Dials::new(),
+            links: Vec::new(),
         }
     }
 
@@ -100,6 +115,7 @@ impl<R> Object<R> {
             colour: self.colour,
             material: self.material.clone(),
             dials: self.dials.clone(),
+            links: self.links.clone(),
         })
     }
 }

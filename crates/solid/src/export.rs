@@ -1,13 +1,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use glam::Vec2;
 use midair_document::{Document, Kind, MeshStore, Object, ObjectId, affine};
 use midair_field::{MeshSource, Placement};
 use midair_mesh::{
     Curve, Format, Named, TriMesh, Unit, Up, WriteError, WriteOptions, write_drawing,
 };
 
-use crate::{Materials, SolidError, finish, surface_of, tube};
+use crate::{Materials, SolidError, finish, own_surface, surface_of, tube};
 
 /// Flat sides around a stroke that is written as a tube.
 const SIDES: usize = 12;
@@ -113,12 +114,12 @@ pub fn export(
             let looks = finish(object, &options.materials);
             curves.push(Named::new(object.name.clone(), curve).finished(Some(looks)));
         } else {
-            let Some(mesh) = object_mesh(file, object, store, volumes, step, cancel)? else {
+            let Some((mesh, uv)) = object_mesh(file, object, store, volumes, step, cancel)? else {
                 continue;
             };
             let looks = finish(object, &options.materials);
-            let mesh = mesh.standing(up);
-            meshes.push(Named::new(object.name.clone(), mesh).finished(Some(looks)));
+            let named = Named::new(object.name.clone(), mesh.standing(up));
+            meshes.push(named.finished(Some(looks)).mapped(uv));
         }
     }
     meshes.retain(|m| !m.value.triangles.is_empty());
@@ -127,7 +128,10 @@ pub fn export(
     }
     let borrowed: Vec<_> = meshes
         .iter()
-        .map(|m| Named::new(m.name.clone(), &m.value).finished(m.finish))
+        .map(|m| {
+            let named = Named::new(m.name.clone(), &m.value);
+            named.finished(m.finish).mapped(m.uv.clone())
+        })
         .collect();
     let unit = options.unit;
     write_drawing(file, &borrowed, &curves, &WriteOptions { unit })?;
@@ -160,6 +164,7 @@ fn curve_of(object: &Object, format: Format, up: Up) -> Option<Curve> {
     })
 }
 
+/// The surface of an object, and where its vertices lie on a picture, where it has such places.
 fn object_mesh(
     file: &Path,
     object: &Object,
@@ -167,7 +172,8 @@ fn object_mesh(
     volumes: &dyn MeshSource,
     step: f32,
     cancel: &AtomicBool,
-) -> Result<Option<TriMesh>, ExportError> {
+) -> Result<Option<(TriMesh, Vec<Vec2>)>, ExportError> {
+    let bare = |mesh: TriMesh| Some((mesh, Vec::new()));
     match &object.kind {
         Kind::Solid(recipe) | Kind::Sheet(recipe) => {
             // Evaluated about the object's own origin and moved afterwards: far from the world's
@@ -176,28 +182,32 @@ fn object_mesh(
                 translation: glam::Vec3::ZERO,
                 ..object.placement
             };
-            let mut mesh = surface_of(recipe, &about, step, volumes, cancel).map_err(|reason| {
-                ExportError::Solid {
+            let (mut mesh, uv) = if let Some(own) = own_surface(recipe) {
+                (own.mesh.transformed(&about.affine()), own.uv)
+            } else {
+                let made = surface_of(recipe, &about, step, volumes, cancel);
+                let mesh = made.map_err(|reason| ExportError::Solid {
                     file: file.into(),
                     object: object.name.clone(),
                     reason,
-                }
-            })?;
+                })?;
+                (mesh, Vec::new())
+            };
             for p in &mut mesh.positions {
                 *p += object.placement.translation;
             }
-            Ok(Some(mesh))
+            Ok(Some((mesh, uv)))
         }
         // Lines that the format does not hold.
         Kind::Line(_) => Ok(None),
         Kind::Stroke(stroke) => {
             let radius = 0.5 * stroke.width;
             let tube = tube(&stroke.points(), radius, stroke.closed, SIDES);
-            Ok(Some(tube.transformed(&object.placement.affine())))
+            Ok(bare(tube.transformed(&object.placement.affine())))
         }
         Kind::Foreign { mesh, .. } => store
             .get(*mesh)
-            .map(|m| Some(m.transformed(&object.placement.affine())))
+            .map(|m| bare(m.transformed(&object.placement.affine())))
             .ok_or_else(|| ExportError::MeshGone {
                 file: file.into(),
                 object: object.name.clone(),

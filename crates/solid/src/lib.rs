@@ -36,7 +36,7 @@ mod tube;
 pub use export::{ExportError, ExportOptions, export, may_export};
 pub use material::{Dial, HeadFault, INK, MOST_DIALS, MaterialInfo, Materials, PLAIN, finish};
 pub use plate::{PlateFault, plate};
-pub use swept::{Clones, clones, own_mesh, surface_of};
+pub use swept::{Clones, clones, own_mesh, own_surface, surface_of};
 pub use thumbnail::Thumbnail;
 pub use tube::tube;
 

@@ -3,6 +3,7 @@ use std::sync::atomic::AtomicBool;
 
 use midair_field::{MeshSource, Node, Placement, Recipe};
 use midair_mesh::TriMesh;
+use midair_swept::Surface;
 
 use crate::{Solid, SolidError};
 
@@ -14,14 +15,20 @@ const MELTED: usize = 4096;
 /// It needs no field, has its own points and is there at once. `None` for anything else, and for a
 /// solid whose surface runs through itself: a field knows what is inside of it.
 pub fn own_mesh(recipe: &Recipe) -> Option<TriMesh> {
+    Some(own_surface(recipe)?.mesh)
+}
+
+/// The same with its places on a picture.
+pub fn own_surface(recipe: &Recipe) -> Option<Surface> {
     match recipe.node() {
-        Node::Component { recipe, .. } => own_mesh(recipe),
+        Node::Component { recipe, .. } => own_surface(recipe),
         Node::Sweep(sweep) if sweep.is_closed() => {
             let solid = sweep.solid().ok()?;
             let clean = solid.inverted.is_empty() && midair_swept::touches(&solid.mesh).0 == 0;
-            clean.then_some(solid.mesh)
+            let (mesh, uv) = (solid.mesh, solid.uv);
+            clean.then_some(Surface { mesh, uv })
         }
-        Node::Sweep(sweep) => sweep.surface().ok().map(|s| s.mesh),
+        Node::Sweep(sweep) => sweep.surface().ok(),
         _ => None,
     }
 }

@@ -13,6 +13,7 @@ pub mod evaluate;
 pub mod hands;
 pub mod help;
 pub mod hold;
+pub mod links;
 pub mod materials;
 pub mod notice;
 pub mod objects;
@@ -92,7 +93,7 @@ impl Plugin for StudioPlugin {
             show::plugin,
             help::plugin,
         ))
-        .add_plugins((hold::plugin, carry::plugin))
+        .add_plugins((hold::plugin, carry::plugin, links::plugin))
         .add_plugins((
             plane::plugin,
             reference::plugin,

@@ -62,9 +62,8 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
     }
     let document = studio.project.document();
     let objects: Vec<_> = carried
-        .objects
-        .iter()
-        .filter_map(|&id| Some((id, document.object(id)?.clone())))
+        .taken()
+        .filter_map(|id| Some((id, document.object(id)?.clone())))
         .collect();
     if let [(id, object)] = objects.as_slice()
         && canvas(object).is_some()

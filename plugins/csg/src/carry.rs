@@ -23,7 +23,7 @@ pub(crate) fn take(
     let mut pending = document.pending().to_vec();
     let mut open = None;
     let mut drawn = Vec::new();
-    for &id in &carried.objects {
+    for id in carried.taken() {
         let Some(object) = document.object(id) else {
             continue;
         };

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_curve::End;
-use midair_document::ObjectId;
+use midair_document::{Link, ObjectId};
 use midair_studio::{
     hands::{Action, Cross, Hand, Hands, Haptic, Side},
     hold::Reserved,
@@ -16,7 +16,7 @@ use midair_swept::{MAX_RIBS, Rib, smoothed};
 use crate::ends::{aimed, end, is_there};
 use crate::phase::{Draft, Phase};
 use crate::solo::{Doing, Solo, Then};
-use crate::{EPSILON, edit, write};
+use crate::{EPSILON, ask, edit, write};
 
 /// How far one click of the cross moves w.
 const CLICK: f32 = 0.25;
@@ -142,6 +142,14 @@ pub(crate) fn ends(
             draft.alone = alone;
             draft.live = None;
             draft.solo = Solo::default();
+        }
+    }
+    if project.is_changed() {
+        // A stroke that is drawn otherwise is a rail as it is now.
+        for rail in draft.rails.iter_mut().flatten() {
+            if let Some(line) = project.document().object(rail.object).and_then(ask::stroke) {
+                rail.line = line;
+            }
         }
     }
     let dt = time.delta_secs();
@@ -376,7 +384,19 @@ pub(crate) fn commit(
         ribs.push(live);
     }
     draft.drop_sweep();
-    let made = write::make(&ribs, onto, &settings.sweep, &project, &shelf);
+    // Its ends follow the strokes they ran along.
+    let links = [0, 1].into_iter().filter_map(|k| {
+        let rail = draft.rails[k].as_ref();
+        let source = rail.filter(|_| draft.pinned[k].is_none())?.object;
+        Some(Link {
+            source,
+            part: k as u32,
+        })
+    });
+    let links = links
+        .filter(|l| project.document().object(l.source).is_some())
+        .collect();
+    let made = write::make(&ribs, onto, links, &settings.sweep, &project, &shelf);
     let done = match made {
         Ok(made) => {
             let sweep = made.sweep.clone();

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_curve::Polyline;
-use midair_document::ObjectId;
+use midair_document::{Edit, Object, ObjectId};
 use midair_field::Sweep;
 use midair_studio::{
     command::Command,
@@ -49,6 +49,8 @@ pub enum SweepAsk {
         /// Whether it stays.
         on: bool,
     },
+    /// The sweep follows no stroke any more.
+    Free,
     /// w₀ and w₁.
     Slopes(f32, f32),
 }
@@ -63,11 +65,13 @@ impl SweepAsk {
     }
 }
 
-/// The points of a stroke in the world, where an object is one.
-pub(crate) fn stroke(project: &Project, id: ObjectId) -> Option<Polyline> {
-    let object = project.document().object(id)?;
+/// The points of a stroke or a line in the world, where an object is one.
+pub(crate) fn stroke(object: &Object) -> Option<Polyline> {
     let there = midair_document::affine(&object.placement);
-    let points = object.stroke()?.points();
+    let points = match object.line() {
+        Some(line) => line.ends().to_vec(),
+        None => object.stroke()?.points(),
+    };
     Some(Polyline::new(
         points.into_iter().map(|p| there.transform_point3(p)),
     ))
@@ -117,10 +121,10 @@ fn carry_out(
             stroke: Some(id),
         } => {
             let object = ObjectId(id);
-            match stroke(project, object) {
+            match project.document().object(object).and_then(stroke) {
                 Some(line) => draft.rails[side as usize] = Some(crate::ends::Rail { object, line }),
                 None => notices.warn(format!(
-                    "Object {id} is no stroke. Draw one in Scaffold, then let an end follow it."
+                    "Object {id} is neither stroke nor line. Draw one in Scaffold, then let an end follow it."
                 )),
             }
             return;
@@ -147,6 +151,11 @@ fn carry_out(
         notices.info("Select a sweep first.");
         return;
     };
+    if ask == SweepAsk::Free {
+        let links = Vec::new();
+        project.commit("Follow no stroke", [Edit::SetLinks { id, links }], notices);
+        return;
+    }
     let Some((sweep, _)) = edit::curves(project, id) else {
         return;
     };
@@ -184,7 +193,9 @@ fn carry_out(
         ),
         SweepAsk::Thickness(thickness) => ("Thickness of", Sweep { thickness, ..sweep }),
         SweepAsk::Caps(caps) => ("Caps of", Sweep { caps, ..sweep }),
-        SweepAsk::Rail { .. } | SweepAsk::Pin { .. } | SweepAsk::Slopes(..) => return,
+        SweepAsk::Rail { .. } | SweepAsk::Pin { .. } | SweepAsk::Slopes(..) | SweepAsk::Free => {
+            return;
+        }
     };
     edit::replace(project, notices, id, step, next);
 }

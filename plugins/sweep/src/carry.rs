@@ -1,29 +1,79 @@
-//! What is carried into Sweep, and a surface that is carried where only solids are of use.
+//! What is carried into Sweep, and surfaces that are carried where only solids are of use.
 
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
-use midair_document::{Edit, ObjectId};
+use midair_document::Edit;
 use midair_field::{Op, Profile, Sweep};
 use midair_studio::{
-    carry::Carried,
+    carry::{Carried, Carrying},
+    command::Command,
     hands::{Action, Hands, Haptic, Side},
     hold::Reserved,
     notice::Notices,
     project::{Project, Selection},
     settings::{Settings, SweepItem, SweepShape},
     show::{to_bevy_mesh, transform},
-    tools::{ToolId, Tools},
+    tools::ToolId,
 };
 
-use crate::phase::{Draft, Phase};
+use crate::phase::{Draft, Offer, Phase};
 use crate::write::kind_of;
 use crate::{SWEEP, ask, ends::Rail};
 
 /// Where what is carried becomes an operand.
 const ASSEMBLE: ToolId = ToolId::new("csg");
+/// Where it becomes a brush.
+const BRUSH: ToolId = ToolId::new("brush");
 
-/// A stroke becomes the rail of the next free end, a solid what is cloned, a surface the sweep whose
-/// curves are bent. A surface carried into Assemble is offered the thickness that would close it.
+/// Surfaces that are carried where only solids are of use are offered the thickness, or the caps, that
+/// would close them.
+pub(crate) fn answer(
+    mut carrying: On<Carrying>,
+    project: Res<Project>,
+    mut draft: ResMut<Draft>,
+    mut notices: ResMut<Notices>,
+) {
+    draft.offer = None;
+    if carrying.to != ASSEMBLE && carrying.to != BRUSH {
+        return;
+    }
+    let document = project.document();
+    let open: Vec<_> = carrying
+        .objects
+        .iter()
+        .filter_map(|&id| {
+            let object = document.object(id)?;
+            Some((id, object.name.clone(), object.sheet()?.profile))
+        })
+        .collect();
+    let Some((_, name, profile)) = open.first() else {
+        return;
+    };
+    let thickness = (2.0 * document.step()).max(0.01);
+    let mm = thickness * 1e3;
+    notices.info(match (open.len(), profile) {
+        (1, Profile::Sheet) => format!(
+            "{name} is open. Finish makes it {mm:.0} mm thick, as the ghost shows; cancel leaves it."
+        ),
+        (1, Profile::Tube) => format!(
+            "{name} is open. Finish caps its ends, as the ghost shows; cancel leaves it."
+        ),
+        (more, _) => format!(
+            "{name} and {} more are open. Finish makes surfaces {mm:.0} mm thick and caps tubes, as the ghosts show; cancel leaves them.",
+            more - 1
+        ),
+    });
+    let objects: Vec<_> = open.into_iter().map(|o| o.0).collect();
+    carrying.answered.extend(&objects);
+    draft.offer = Some(Offer {
+        objects,
+        thickness,
+        to: carrying.to.clone(),
+    });
+}
+
+/// A stroke or a line becomes the rail of the next free end, a solid what is cloned, a surface the
+/// sweep whose curves are bent.
 pub(crate) fn take(
     carried: On<Carried>,
     project: Res<Project>,
@@ -32,36 +82,16 @@ pub(crate) fn take(
     mut draft: ResMut<Draft>,
     mut notices: ResMut<Notices>,
 ) {
-    let document = project.document();
     if carried.to != SWEEP {
-        if carried.to != ASSEMBLE {
-            return;
-        }
-        let open = carried.objects.iter().find_map(|&id| {
-            let object = document.object(id)?;
-            let sheet = object.sheet()?;
-            Some((id, object.name.clone(), sheet.profile))
-        });
-        if let Some((id, name, profile)) = open {
-            let thickness = (2.0 * document.step()).max(0.01);
-            draft.offer = Some((id, thickness));
-            let how = match profile {
-                Profile::Sheet => {
-                    let mm = thickness * 1e3;
-                    format!("makes it {mm:.0} mm thick, as the ghost shows")
-                }
-                Profile::Tube => "caps its ends, as the ghost shows".to_owned(),
-            };
-            notices.info(format!("{name} is open. Finish {how}; cancel leaves it."));
-        }
         return;
     }
+    let document = project.document();
     for &id in &carried.objects {
         let Some(object) = document.object(id) else {
             continue;
         };
         let name = &object.name;
-        if let Some(line) = ask::stroke(&project, id) {
+        if let Some(line) = ask::stroke(object) {
             let free = [0, 1].into_iter().find(|&k| draft.rails[k].is_none());
             let k = free.unwrap_or(0);
             draft.rails[k] = Some(Rail { object: id, line });
@@ -116,18 +146,24 @@ fn closed(sweep: &Sweep, thickness: f32) -> Sweep {
 /// Finish closes the surface, and marks it where it was carried into Assemble: one step.
 pub(crate) fn accept(
     mut hands: ResMut<Hands>,
-    tools: Res<Tools>,
     mut draft: ResMut<Draft>,
     mut project: ResMut<Project>,
     mut notices: ResMut<Notices>,
+    mut commands: MessageWriter<Command>,
 ) {
-    let Some((id, thickness)) = draft.offer else {
+    let Some(offer) = &draft.offer else {
         return;
     };
-    let Some(sheet) = project.document().object(id).and_then(|o| o.sheet()) else {
+    let document = project.document();
+    let open: Vec<_> = offer
+        .objects
+        .iter()
+        .filter_map(|&id| Some((id, closed(document.object(id)?.sheet()?, offer.thickness))))
+        .collect();
+    if open.is_empty() {
         draft.offer = None;
         return;
-    };
+    }
     if hands.pressed(Action::Cancel).is_some() {
         draft.offer = None;
         return;
@@ -135,15 +171,24 @@ pub(crate) fn accept(
     let Some(side) = hands.pressed(Action::Finish) else {
         return;
     };
-    let next = closed(sheet, thickness);
+    let to = offer.to.clone();
     draft.offer = None;
-    let done = match kind_of(&next) {
-        Ok(kind) => {
-            let mut edits = vec![Edit::SetKind { id, kind }];
-            if tools.active().is_some_and(|t| t.id == ASSEMBLE) {
+    let objects: Vec<_> = open.iter().map(|o| o.0).collect();
+    let kinds: Result<Vec<_>, String> = open
+        .iter()
+        .map(|(id, next)| {
+            Ok(Edit::SetKind {
+                id: *id,
+                kind: kind_of(next)?,
+            })
+        })
+        .collect();
+    let done = match kinds {
+        Ok(mut edits) => {
+            if to == ASSEMBLE {
                 let mut pending = project.document().pending().to_vec();
-                pending.retain(|(o, _)| *o != id);
-                pending.push((id, Op::Union));
+                pending.retain(|(o, _)| !objects.contains(o));
+                pending.extend(objects.iter().map(|&o| (o, Op::Union)));
                 edits.push(Edit::SetPending { pending });
             }
             project.commit("Close", edits, &mut notices)
@@ -153,12 +198,16 @@ pub(crate) fn accept(
             false
         }
     };
+    if done && to != ASSEMBLE {
+        // Closed it is of use there.
+        commands.write(Command::Carry { objects, to });
+    }
     hands.pulse(side, Haptic::of(done));
 }
 
-/// The ghost of the thickness that is offered.
+/// The ghosts of what is offered, and what they were made for.
 #[derive(Resource, Default)]
-pub(crate) struct Ghost(Option<(ObjectId, Entity)>);
+pub(crate) struct Ghost(Option<(Offer, Vec<Entity>)>);
 
 pub(crate) fn ghost(
     draft: Res<Draft>,
@@ -168,30 +217,29 @@ pub(crate) fn ghost(
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut commands: Commands,
 ) {
-    let wanted = draft.offer.map(|o| o.0);
-    if ghost.0.map(|g| g.0) == wanted {
+    if ghost.0.as_ref().map(|g| &g.0) == draft.offer.as_ref() {
         return;
     }
-    if let Some((_, entity)) = ghost.0.take() {
+    for entity in ghost.0.take().into_iter().flat_map(|g| g.1) {
         commands.entity(entity).try_despawn();
     }
-    let Some((id, thickness)) = draft.offer else {
+    let Some(offer) = &draft.offer else {
         return;
     };
-    let made = project.document().object(id).and_then(|object| {
-        let solid = closed(object.sheet()?, thickness).solid().ok()?;
-        Some((solid.mesh, transform(&object.placement)))
-    });
-    let Some((mesh, at)) = made else { return };
     let look = materials.add(StandardMaterial {
         base_color: Color::srgba(0.8, 0.84, 0.95, 0.35),
         alpha_mode: AlphaMode::Blend,
         cull_mode: None,
         ..default()
     });
-    let mesh = Mesh3d(meshes.add(to_bevy_mesh(&mesh)));
-    let shadowless = (NotShadowCaster, NotShadowReceiver);
-    let drawn = (mesh, MeshMaterial3d(look), at, shadowless);
-    let entity = commands.spawn((Name::new("Thickness"), drawn)).id();
-    ghost.0 = Some((id, entity));
+    let made = offer.objects.iter().filter_map(|&id| {
+        let object = project.document().object(id)?;
+        let solid = closed(object.sheet()?, offer.thickness).solid().ok()?;
+        let mesh = Mesh3d(meshes.add(to_bevy_mesh(&solid.mesh)));
+        let at = transform(&object.placement);
+        let shadowless = (NotShadowCaster, NotShadowReceiver);
+        let drawn = (mesh, MeshMaterial3d(look.clone()), at, shadowless);
+        Some(commands.spawn((Name::new("Thickness"), drawn)).id())
+    });
+    ghost.0 = Some((offer.clone(), made.collect()));
 }

@@ -1,11 +1,12 @@
 //! What Sweep shows of its phase: the curve between the ends, and what each button does now.
 
 use bevy::prelude::*;
+use midair_curve::Even;
 use midair_studio::{
     hands::{Action, Hands},
     hold::Ghosted,
     project::{Project, Selection},
-    settings::{Settings, SweepShape},
+    settings::{Settings, SweepHands, SweepShape},
     show::Readouts,
     tools::{Aim, Hint, HintKey, Hints},
 };
@@ -104,8 +105,9 @@ pub(crate) fn curve(
 fn frames(gizmos: &mut Gizmos, rib: &Rib, unit: f32) {
     const TICKS: usize = 24;
     let (curve, pace, frames) = (rib.curve(), rib.pace(), rib.frames());
+    let even = Even::new(&curve);
     for i in 0..=TICKS {
-        let v = pace.at(i as f64 / TICKS as f64);
+        let v = even.at(pace.at(i as f64 / TICKS as f64));
         let at = curve.at(v).as_vec3();
         let normal = frames.at(v).y_axis.as_vec3();
         gizmos.line(at, at + normal * (0.015 * unit), FAINT);
@@ -114,7 +116,12 @@ fn frames(gizmos: &mut Gizmos, rib: &Rib, unit: f32) {
 
 /// What is bent, or would be closed, is a shell: what it becomes is shown in its place. And how a
 /// pointer is to find a depth for the ends.
-pub(crate) fn ghosts(draft: Res<Draft>, mut ghosted: ResMut<Ghosted>, mut aim: ResMut<Aim>) {
+pub(crate) fn ghosts(
+    draft: Res<Draft>,
+    settings: Res<Settings>,
+    mut ghosted: ResMut<Ghosted>,
+    mut aim: ResMut<Aim>,
+) {
     let bent = match &draft.phase {
         Phase::Editing {
             object,
@@ -126,6 +133,9 @@ pub(crate) fn ghosts(draft: Res<Draft>, mut ghosted: ResMut<Ghosted>, mut aim: R
     ghosted.set_if_neq(Ghosted(bent));
     let mut next = Aim {
         draws: draft.alone,
+        both: settings.sweep.hands != SweepHands::One,
+        // What is swept goes where it is led, whatever stands there.
+        surfaces: !draft.is_sweeping() && !matches!(draft.solo, Solo::LeftWay { .. }),
         ..Aim::default()
     };
     if draft.alone
@@ -170,11 +180,9 @@ pub(crate) fn hints(
         }
         Phase::Idle => {
             let status = match (&draft.offer, &draft.extends) {
-                (Some((_, thickness)), _) => {
-                    format!(
-                        "It is open: finish makes it {:.0} mm thick",
-                        thickness * 1e3
-                    )
+                (Some(offer), _) => {
+                    let mm = offer.thickness * 1e3;
+                    format!("It is open: finish makes it {mm:.0} mm thick")
                 }
                 (None, Some(_)) => "Sweep on: hold near its end".to_owned(),
                 (None, None) => format!("Sweep a {shape}"),

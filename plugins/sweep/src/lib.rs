@@ -12,6 +12,7 @@ mod clones;
 mod cue;
 mod edit;
 mod ends;
+mod follow;
 mod panel;
 mod phase;
 mod solo;
@@ -22,12 +23,13 @@ use bevy::prelude::*;
 use midair_studio::{
     StudioSet,
     hold::Ghosted,
+    links::AddFollow,
     panel::{AddPanel, Dock, PanelInfo, icon},
     tools::{AddTool, Tool, ToolChanged, ToolId, tool_active},
 };
 
 pub use ask::SweepAsk;
-pub use phase::{Draft, Phase};
+pub use phase::{Draft, Offer, Phase};
 pub use solo::Solo;
 pub use wires::Wires;
 
@@ -65,7 +67,9 @@ impl Plugin for SweepPlugin {
         .init_resource::<clones::Row>()
         .init_resource::<write::Looks>()
         .init_resource::<carry::Ghost>()
+        .add_follow(follow::follow)
         .add_observer(abort)
+        .add_observer(carry::answer)
         .add_observer(carry::take)
         .add_systems(
             Update,

@@ -107,6 +107,17 @@ impl SweepPanel {
         let Some(sweep) = object.sweep() else { return };
         ui.label(kit::strong(&object.name));
         ui.weak(format!("{} curves", sweep.ribs.len()));
+        if !object.links.is_empty() {
+            let names = object.links.iter();
+            let names = names.filter_map(|l| Some(&*project.document().object(l.source)?.name));
+            let names: Vec<_> = names.collect();
+            ui.horizontal_wrapped(|ui| {
+                ui.label(format!("Follows {}", names.join(" and ")));
+                if ui.button("Free it").clicked() {
+                    asks.push(SweepAsk::Free.command());
+                }
+            });
+        }
         let mut count = sweep.count;
         if self.number(ui, "Points of it", &mut count, 2.0..=256.0, 0) && count != sweep.count {
             asks.push(SweepAsk::Count(count).command());

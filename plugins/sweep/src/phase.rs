@@ -3,7 +3,7 @@ use std::sync::Arc;
 use bevy::prelude::*;
 use midair_curve::{End, Lengths};
 use midair_document::ObjectId;
-use midair_studio::hands::Side;
+use midair_studio::{hands::Side, tools::ToolId};
 use midair_swept::Rib;
 
 use crate::ends::{Rail, Spring};
@@ -51,6 +51,17 @@ pub struct Held {
     pub offset: End,
 }
 
+/// Open surfaces were carried where only solids are of use: how they would be closed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Offer {
+    /// Which.
+    pub objects: Vec<ObjectId>,
+    /// Metres, for those that are no tubes; a tube is capped.
+    pub thickness: f32,
+    /// Where they were carried.
+    pub to: ToolId,
+}
+
 /// What a cancelled gesture throws away.
 #[derive(Resource, Clone, Debug)]
 pub struct Draft {
@@ -74,8 +85,8 @@ pub struct Draft {
     pub alone: bool,
     /// The sweep the next one goes on with.
     pub extends: Option<ObjectId>,
-    /// The thickness with which a surface that was carried elsewhere would be closed.
-    pub offer: Option<(ObjectId, f32)>,
+    /// How surfaces that were carried elsewhere would be closed.
+    pub offer: Option<Offer>,
     pub(crate) lengths: Lengths,
     pub(crate) springs: [Spring; 2],
     pub(crate) swipes: [Option<f32>; 2],

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy::tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
-use midair_document::{Edit, Kind, Object, ObjectId};
+use midair_document::{Edit, Kind, Link, Object, ObjectId};
 use midair_field::{Node, Placement, Recipe};
 use midair_studio::{
     notice::Notices,
@@ -33,6 +33,7 @@ const FEW: usize = 24;
 pub(crate) fn make(
     ribs: &[Rib],
     onto: Option<ObjectId>,
+    links: Vec<Link>,
     settings: &SweepSettings,
     project: &Project,
     shelf: &Shelf,
@@ -87,6 +88,7 @@ pub(crate) fn make(
         let object = Object::new(name.clone(), kind_of(&sweep)?).placed(Placement::at(at));
         (name, object, Some(sweep))
     };
+    let object = Object { links, ..object };
     Ok(Made {
         object: id,
         step: format!("Sweep {name}"),

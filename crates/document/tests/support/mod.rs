@@ -4,7 +4,7 @@
 use glam::{DVec3, Quat, Vec3};
 use midair_document::{
     Colour, ConstructionLine, Document, DrawnStroke, Edit, Group, GroupId, Kept, Kind, Layer,
-    LayerId, MeshStore, Object, ObjectId, Relation, Through,
+    LayerId, Link, MeshStore, Object, ObjectId, Relation, Through,
 };
 use midair_field::{Node, Op, Operand, Placement, Primitive, Recipe};
 use midair_mesh::TriMesh;
@@ -111,7 +111,7 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
     let other = GroupId(pick(document.groups().map(|(id, _)| id.0).collect(), a));
     let next = document.next_id();
     let number = f32::from(b % 50) * 0.01 + 0.01;
-    match kind % 30 {
+    match kind % 31 {
         0..=3 => Edit::Add {
             id: ObjectId(next),
             object: Object::solid(format!("Ball {b}"), ball(number))
@@ -204,6 +204,15 @@ pub fn edit(document: &Document, meshes: &MeshStore, (kind, a, b): Dice) -> Edit
         24 => Edit::SetPlacement {
             id,
             placement: Placement::at(Vec3::new(f32::NAN, 0.0, 0.0)),
+        },
+        30 => Edit::SetLinks {
+            id,
+            links: (0..b % 3)
+                .map(|part| Link {
+                    source: id,
+                    part: part.into(),
+                })
+                .collect(),
         },
         _ => fuse_pending(document, next),
     }

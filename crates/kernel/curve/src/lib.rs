@@ -3,6 +3,7 @@
 //! - [`CubicBezier`] and [`Spline`]: one cubic segment, and a chain of them.
 //! - [`Hermite`]: the curve between two controllers, with [`Lengths`] that keep its speed even.
 //! - [`Frames`]: a frame along it that turns as little as it can and ends as the right one is held.
+//! - [`Even`]: where along it a share of its length lies.
 //! - [`Pace`]: how evenly counted points are spread along it.
 //! - [`Polyline`]: points joined by straight lines, measured and resampled by arc length.
 //!
@@ -19,12 +20,14 @@
 //! ```
 
 mod bezier;
+mod even;
 mod frames;
 mod hermite;
 mod pace;
 mod polyline;
 
 pub use bezier::{CubicBezier, Spline};
+pub use even::Even;
 pub use frames::{Frames, unwound};
 pub use hermite::{End, Hermite, Lengths};
 pub use pace::Pace;

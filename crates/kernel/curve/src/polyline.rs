@@ -51,6 +51,21 @@ impl Polyline {
         Some(self.points[after - 1].lerp(end, t))
     }
 
+    /// Metres from its start to the place on it that is nearest to a point.
+    pub fn nearest(&self, to: DVec3) -> f64 {
+        let mut best = (f64::INFINITY, 0.0);
+        for (i, pair) in self.points.windows(2).enumerate() {
+            let along = pair[1] - pair[0];
+            let t = (to - pair[0]).dot(along) / along.length_squared().max(1e-18);
+            let t = t.clamp(0.0, 1.0);
+            let far = (pair[0] + along * t).distance_squared(to);
+            if far < best.0 {
+                best = (far, self.along[i] + t * (self.along[i + 1] - self.along[i]));
+            }
+        }
+        best.1
+    }
+
     /// `count` points, at least two, evenly by arc length and with both ends among them. Empty
     /// where it has no point.
     pub fn resampled(&self, count: usize) -> Vec<DVec3> {
@@ -87,6 +102,15 @@ mod tests {
         for pair in Polyline::new(points).along.windows(2) {
             assert!((pair[1] - pair[0] - 0.5).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn the_nearest_place_is_found_along_it() {
+        let line = Polyline::new([DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y]);
+        assert!((line.nearest(DVec3::new(0.4, 0.3, 0.2)) - 0.4).abs() < 1e-12);
+        assert!((line.nearest(DVec3::new(1.5, 0.7, 0.0)) - 1.7).abs() < 1e-12);
+        assert_eq!(line.nearest(DVec3::splat(-1.0)), 0.0);
+        assert_eq!(Polyline::new([DVec3::ONE]).nearest(DVec3::X), 0.0);
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! - [`to_bytes`] and [`from_bytes`] keep a mesh bit for bit.
 //!
 //! What is *not* promised: materials, colours, texture coordinates, skins and animations are not
-//! kept, and a mesh is never repaired beyond dropping repeated and collapsed triangles.
+//! read, and a mesh is never repaired beyond dropping repeated and collapsed triangles.
 //!
 //! ```
 //! use glam::Vec3;
@@ -32,6 +32,7 @@
 
 mod bytes;
 mod check;
+mod crease;
 mod finish;
 mod format;
 mod measure;

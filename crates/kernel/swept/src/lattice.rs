@@ -1,6 +1,6 @@
 //! Points in rows, and the triangles between them.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// A surface with shared vertices, not necessarily closed.
 #[derive(Clone, Debug, Default)]
@@ -118,8 +118,9 @@ impl Skin {
     }
 
     /// A vertex where several fans of triangles meet becomes one for each of them: a wall drawn up
-    /// from it would otherwise have four sides. [`Skin::vertex`] then names one of them.
-    pub fn split(&mut self) {
+    /// from it would otherwise have four sides. [`Skin::vertex`] then names one of them; each has the same
+    /// place on a picture.
+    pub fn split(&mut self, uv: &mut Vec<Vec2>) {
         let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.positions.len()];
         for (t, corners) in self.triangles.iter().enumerate() {
             for &v in corners {
@@ -150,6 +151,7 @@ impl Skin {
                 if !std::mem::replace(&mut first, false) {
                     let own = self.positions.len() as u32;
                     self.positions.push(self.positions[v as usize]);
+                    uv.push(uv[v as usize]);
                     for t in fan {
                         for x in &mut self.triangles[t as usize] {
                             if *x == v {

@@ -1,5 +1,5 @@
-use glam::{DQuat, Quat, Vec3};
-use midair_curve::{End, Frames, Hermite, Lengths, Pace};
+use glam::{DQuat, DVec3, Quat, Vec3};
+use midair_curve::{End, Even, Frames, Hermite, Lengths, Pace};
 use serde::{Deserialize, Serialize};
 
 /// The curve at one moment of a sweep, as the two hands held it.
@@ -34,6 +34,17 @@ fn is_level(q: &Quat) -> bool {
 
 fn is_none(x: &f32) -> bool {
     *x == 0.0
+}
+
+/// Points at even steps of u, each where the curve has run the share v(u) of its length.
+fn spread(
+    curve: Hermite,
+    pace: Pace,
+    count: usize,
+) -> impl DoubleEndedIterator<Item = DVec3> + ExactSizeIterator {
+    let even = Even::new(&curve);
+    let last = count.max(2) - 1;
+    (0..last + 1).map(move |i| curve.at(even.at(pace.at(i as f64 / last as f64))))
 }
 
 /// Points between which a rib's frame is made.
@@ -92,32 +103,26 @@ impl Rib {
         }
     }
 
-    /// `count` points s(v(u)) at even steps of u, at least two, both ends among them.
+    /// `count` points at even steps of u, at least two, both ends among them: each where the curve has
+    /// run the share v(u) of its length.
     pub fn points_into(&self, count: usize, out: &mut Vec<Vec3>) {
-        let (curve, pace) = (self.curve(), self.pace());
-        let last = count.max(2) - 1;
-        out.extend((0..=last).map(|i| curve.at(pace.at(i as f64 / last as f64)).as_vec3()));
+        out.extend(spread(self.curve(), self.pace(), count).map(|p| p.as_vec3()));
     }
 
     /// The closed profile of a tube: 2·count − 2 points, the curve from left to right and its
     /// closing one back (§3.2.2). The first `count` are those of [`Rib::points_into`].
     pub fn ring_into(&self, count: usize, out: &mut Vec<Vec3>) {
         self.points_into(count, out);
-        let (back, pace) = (self.curve().closing(), self.pace());
-        let last = count.max(2) - 1;
-        let inner = (1..last).rev();
-        out.extend(inner.map(|i| back.at(pace.at(i as f64 / last as f64)).as_vec3()));
+        let back = spread(self.curve().closing(), self.pace(), count);
+        let inner = back.rev().skip(1).take(count.max(2) - 2);
+        out.extend(inner.map(|p| p.as_vec3()));
     }
 
     /// The largest distance between corresponding points of two ribs (§3.2.1's measure against ε).
     pub fn apart(&self, other: &Self, count: usize) -> f32 {
-        let last = count.max(2) - 1;
-        let (a, b) = ((self.curve(), self.pace()), (other.curve(), other.pace()));
-        (0..=last)
-            .map(|i| {
-                let u = i as f64 / last as f64;
-                a.0.at(a.1.at(u)).distance_squared(b.0.at(b.1.at(u)))
-            })
+        let own = spread(self.curve(), self.pace(), count);
+        own.zip(spread(other.curve(), other.pace(), count))
+            .map(|(a, b)| a.distance_squared(b))
             .fold(0.0, f64::max)
             .sqrt() as f32
     }

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
+use midair_curve::Even;
 use serde::{Deserialize, Serialize};
 
 use crate::{Rib, SweepError};
@@ -17,7 +18,7 @@ pub struct Row {
     pub count: u32,
     /// The factor on what is cloned.
     pub size: f32,
-    /// Clones that stand closer are smaller: by ‖s′(v)‖·v′(u) over the curve's length.
+    /// Clones that stand closer are smaller: by v′(u).
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub paced: bool,
 }
@@ -76,19 +77,19 @@ impl Row {
         let mut places = Vec::with_capacity(self.len().min(MAX_CLONES));
         for rib in self.ribs.iter() {
             let (curve, pace, frames) = (rib.curve(), rib.pace(), rib.frames());
-            let length = curve.length().max(1e-9);
+            let even = Even::new(&curve);
             for i in 0..self.count {
                 let u = match self.count {
                     1 => 0.5,
                     n => f64::from(i) / f64::from(n - 1),
                 };
-                let v = pace.at(u);
+                let v = even.at(pace.at(u));
+                // Counted along its length the curve has one speed, and what is left of it is v′(u).
                 let factor = if self.paced {
-                    (curve.derivative(v).length() * pace.derivative(u) / length) as f32
+                    pace.derivative(u) as f32
                 } else {
                     1.0
                 };
-                let factor = if factor.is_finite() { factor } else { 1.0 };
                 places.push(Place {
                     translation: curve.at(v).as_vec3(),
                     rotation: glam::DQuat::from_mat3(&frames.at(v)).as_quat().normalize(),

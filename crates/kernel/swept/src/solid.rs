@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use midair_mesh::{TriMesh, check};
 
 use crate::lattice::Skin;
@@ -9,17 +9,19 @@ use crate::{Profile, Sweep, SweepError};
 pub struct Solid {
     /// Closed, manifold and consistently wound.
     pub mesh: TriMesh,
+    /// (u, metres swept) for each vertex.
+    pub uv: Vec<Vec2>,
     /// Where the thickness had to be taken back since the surface bends more sharply than that, and
     /// where that was not enough: its faces there look the wrong way.
     pub inverted: Vec<Vec3>,
 }
 
 /// Rounds in which a thickness is taken back where it is too much.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 40;
 /// What is left of it in each.
 const BACK: f32 = 0.7;
 /// And at least.
-const LEAST: f32 = 0.02;
+const LEAST: f32 = 0.001;
 
 impl Sweep {
     /// A sheet with its thickness, a tube with its caps or the thickness of its wall.
@@ -33,15 +35,18 @@ impl Sweep {
         }
         let points = self.points();
         let mut skin = self.skin(&points);
+        let mut uv = self.uv(&points, &skin);
         let (mesh, inverted) = if self.profile == Profile::Tube && self.caps {
             self.cap(&mut skin);
-            skin.split();
+            skin.split(&mut uv);
             if skin.volume() < 0.0 {
                 skin.triangles.iter_mut().for_each(|t| t.swap(1, 2));
             }
             (finished(skin.positions, skin.triangles), Vec::new())
         } else {
-            skin.split();
+            skin.split(&mut uv);
+            // Both sides lie on the same picture.
+            uv.extend_from_within(..);
             thickened(&skin, self.thickness)
         };
         // What is flatter than a hair over its whole area is no solid.
@@ -49,7 +54,7 @@ impl Sweep {
         if mesh.triangles.is_empty() || volume <= 1.0e-7 * area {
             return Err(SweepError::Flat);
         }
-        Ok(Solid { mesh, inverted })
+        Ok(Solid { mesh, uv, inverted })
     }
 
     /// Strips from each point of the first and the last rib to its opposite.

@@ -162,6 +162,28 @@ impl Sweep {
         .skin()
     }
 
+    /// (u, metres swept) for each vertex of the skin. u runs from 0 to 1 along a curve, and back along
+    /// the one that closes a tube, so that its picture has no seam.
+    pub(crate) fn uv(&self, points: &[Vec3], skin: &Skin) -> Vec<Vec2> {
+        let mut uv = vec![Vec2::ZERO; skin.positions.len()];
+        let columns = self.columns();
+        let last = (self.count.clamp(2, MAX_COUNT) - 1) as usize;
+        let mut along = 0.0;
+        for (j, row) in points.chunks(columns).enumerate() {
+            if j > 0 {
+                let before = &points[(j - 1) * columns..j * columns];
+                let moved = row.iter().zip(before).map(|(a, b)| a.distance(*b));
+                along += moved.sum::<f32>() / columns as f32;
+            }
+            for i in 0..columns {
+                let there = if i > last { columns - i } else { i };
+                let u = there as f32 / last as f32;
+                uv[skin.vertex[j * columns + i] as usize] = Vec2::new(u, along);
+            }
+        }
+        uv
+    }
+
     /// The surface itself, without thickness and caps.
     ///
     /// # Errors
@@ -174,20 +196,7 @@ impl Sweep {
             return Err(SweepError::Flat);
         }
         let normals = skin.normals();
-        let mut uv = vec![Vec2::ZERO; skin.positions.len()];
-        let columns = self.columns();
-        let mut along = 0.0;
-        for (j, row) in points.chunks(columns).enumerate() {
-            if j > 0 {
-                let before = &points[(j - 1) * columns..j * columns];
-                let moved = row.iter().zip(before).map(|(a, b)| a.distance(*b));
-                along += moved.sum::<f32>() / columns as f32;
-            }
-            for i in 0..columns {
-                let u = i as f32 / (columns - 1).max(1) as f32;
-                uv[skin.vertex[j * columns + i] as usize] = Vec2::new(u, along);
-            }
-        }
+        let uv = self.uv(&points, &skin);
         Ok(Surface {
             mesh: TriMesh {
                 positions: skin.positions,

@@ -147,6 +147,7 @@ fn five_hundred_random_sweeps_are_closed_or_say_where_they_touch() {
         let (pairs, places) = touches(&solid.mesh);
         assert_eq!(pairs, report.self_touching);
         assert_eq!(pairs == 0, places.is_empty());
+        assert_eq!(solid.uv.len(), solid.mesh.positions.len());
         inverted += usize::from(!solid.inverted.is_empty());
         match pairs {
             0 => {
@@ -265,7 +266,9 @@ proptest! {
         let ribs: Vec<Rib> = ways.ribs().iter().map(|r| Rib { slopes: [1.0; 2], ..*r }).collect();
         prop_assume!(ribs.len() > 3);
         let smooth = smoothed(&ribs, alpha, 1);
-        let points = |r: &Rib| { let mut p = Vec::new(); r.points_into(12, &mut p); p };
+        let points = |r: &Rib| -> Vec<Vec3> {
+            (0..12).map(|i| r.curve().at(f64::from(i) / 11.0).as_vec3()).collect()
+        };
         prop_assert_eq!(points(&smooth[0]), points(&ribs[0]));
         for i in 1..ribs.len() - 1 {
             let (a, b, c, s) = (points(&ribs[i - 1]), points(&ribs[i]), points(&ribs[i + 1]), points(&smooth[i]));

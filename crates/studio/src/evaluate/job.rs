@@ -10,7 +10,7 @@ use midair_field::bake::Progress;
 use midair_field::{Node, Place, Sweep};
 use midair_library::Volumes;
 use midair_mesh::TriMesh;
-use midair_solid::{Clones, Solid, SolidError, clones, own_mesh};
+use midair_solid::{Clones, Solid, SolidError, clones, own_surface};
 
 use super::backend::{Asked, Backend};
 use super::{Key, Update};
@@ -90,6 +90,20 @@ impl Made {
             volume: 0.0,
             ..made
         })
+    }
+
+    /// A closed sweep, drawn sharp where it is and with its places on a picture.
+    fn from_swept(mesh: TriMesh, mut uv: Vec<Vec2>) -> Self {
+        let (sharp, more) = mesh.creased(SHARP);
+        let own = more.iter().filter_map(|&v| uv.get(v as usize).copied());
+        let own: Vec<Vec2> = own.collect();
+        uv.extend(own);
+        let made = Self::from_mesh(Arc::new(mesh));
+        if let Ok(mut drawn) = made.drawn.lock() {
+            let sharp = to_bevy_mesh(&sharp);
+            *drawn = Some(sharp.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv));
+        }
+        made
     }
 
     /// From a mesh that needs no evaluation.
@@ -187,8 +201,8 @@ impl Running {
                 {
                     return Ok(sheet);
                 }
-                if let Some(mesh) = own_mesh(&recipe) {
-                    return Ok(Made::from_mesh(Arc::new(mesh)));
+                if let Some(own) = own_surface(&recipe) {
+                    return Ok(Made::from_swept(own.mesh, own.uv));
                 }
                 let mut line = None;
                 // A painting is kept with its field, and changes stroke by stroke: the processor's.
@@ -239,6 +253,8 @@ impl Running {
     }
 }
 
+/// Radians between faces: a rim or the edge of a cap turns further.
+const SHARP: f32 = 0.7;
 /// Clones up to so many are entities of their own, drawn together since they share a mesh.
 pub(crate) const ONE_BY_ONE: usize = 1024;
 /// Vertices of all clones of a row together, about.

@@ -461,6 +461,8 @@ fn copies(
                 group,
                 locked: false,
                 fresh: false,
+                // A copy stands elsewhere: it has its own shape.
+                links: Vec::new(),
                 ..object.clone()
             };
             edits.push(Edit::Add {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bevy::prelude::*;
-use midair_document::{Document, Edit, History, MeshStore, ObjectId};
+use midair_document::{Document, Edit, EditError, History, MeshStore, ObjectId};
 use midair_library::Folders;
 use midair_mesh::{MeshHash, TriMesh};
 
@@ -23,6 +23,7 @@ pub use leave::{Answer, Leaving, Then};
 pub use shelf::Shelf;
 pub use thumbnails::{Picture, Thumbnails};
 
+use crate::links::Follow;
 use crate::notice::Notices;
 use crate::symmetry::{Image, spread};
 
@@ -88,6 +89,8 @@ pub struct Project {
     /// The images of live symmetry.
     images: Vec<Image>,
     number: u64,
+    /// How what is linked follows its sources.
+    follows: Vec<Follow>,
 }
 
 impl Project {
@@ -100,6 +103,7 @@ impl Project {
             give_up: false,
             images: Vec::new(),
             number: PROJECTS.fetch_add(1, Ordering::Relaxed),
+            follows: Vec::new(),
         }
     }
 
@@ -150,10 +154,39 @@ impl Project {
         notices: &mut Notices,
     ) -> bool {
         let before = self.history.committed();
-        if let Err(reason) = self.history.step(name, edits.into_iter().collect()) {
+        let edits = edits.into_iter().collect();
+        let linked = !self.follows.is_empty()
+            && self.history.in_progress().is_none()
+            && self.document().objects().any(|(_, o)| !o.links.is_empty());
+        let done = if linked {
+            self.step_with_links(name.into(), edits)
+        } else {
+            self.history.step(name, edits)
+        };
+        if let Err(reason) = done {
             notices.warn(reason.to_string());
         }
         self.history.committed() != before
+    }
+
+    /// A step, and in it what follows from it.
+    fn step_with_links(&mut self, name: String, edits: Vec<Edit>) -> Result<(), EditError> {
+        let was = self.document().clone();
+        // Cannot fail: none is open.
+        let _ = self.history.begin(name);
+        let mut made = edits.into_iter().try_for_each(|e| self.history.apply(e));
+        if made.is_ok() {
+            let now = self.document();
+            let more: Vec<Edit> = self.follows.iter().flat_map(|f| f(&was, now)).collect();
+            made = more.into_iter().try_for_each(|e| self.history.apply(e));
+        }
+        match made {
+            Ok(()) => {
+                self.history.commit();
+            }
+            Err(_) => self.history.abort(),
+        }
+        made
     }
 
     /// The same under the live symmetry: what happens to objects happens to their images, in the same
@@ -172,6 +205,14 @@ impl Project {
     /// The images that live symmetry makes of everything: none while it is off.
     pub fn images(&self) -> &[Image] {
         &self.images
+    }
+
+    pub(crate) fn follows(&self) -> &[Follow] {
+        &self.follows
+    }
+
+    pub(crate) fn set_follows(&mut self, follows: Vec<Follow>) {
+        self.follows = follows;
     }
 
     pub(crate) fn set_images(&mut self, images: Vec<Image>) {

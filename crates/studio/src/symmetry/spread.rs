@@ -283,6 +283,8 @@ impl<'a> Sides<'a> {
             group,
             locked: false,
             fresh: false,
+            // What its original follows is on the other side.
+            links: Vec::new(),
             ..(**object).clone()
         });
         self.added.push(copy.clone());

@@ -17,6 +17,8 @@ pub struct Aim {
     pub surfaces: bool,
     /// The hand is held level, or as the surface under it lies, and not as the eye looks.
     pub level: bool,
+    /// Both hands are led at once: a gamepad's other stick moves the hand that does not lead.
+    pub both: bool,
     /// Points that catch the hand, in world metres.
     pub points: Vec<Vec3>,
     /// Segments that catch it, after the points.
@@ -29,6 +31,7 @@ impl Default for Aim {
             draws: false,
             surfaces: true,
             level: false,
+            both: false,
             points: Vec::new(),
             lines: Vec::new(),
         }

@@ -1,7 +1,7 @@
 //! The sticks and the camera.
 
 use bevy::prelude::*;
-use midair_studio::{hands::Side, settings::Settings};
+use midair_studio::{hands::Side, settings::Settings, tools::Aim};
 
 use super::Pad;
 use crate::bindings::{Control, Controls};
@@ -44,7 +44,7 @@ pub(crate) fn camera(
     settings: Res<Settings>,
     (focus, ring): (Res<Focus>, Res<Ring>),
     time: Res<Time>,
-    pad: Res<Pad>,
+    (pad, aim): (Res<Pad>, Res<Aim>),
     camera: Single<(&mut Orbit, &Transform)>,
 ) {
     let dt = time.delta_secs();
@@ -57,11 +57,11 @@ pub(crate) fn camera(
     }
     if pad.leads && !ring.is_open() && !controls.pressed(Control::Deep) {
         let (hand, mut view) = sticks(&controls, &settings);
-        if focus.is_inside() {
-            // It slides in the panel.
+        let roams = controls.pressed(Control::Roam);
+        if focus.is_inside() || aim.both && !roams {
+            // It slides in the panel, or moves the other hand.
             view = Vec2::ZERO;
         }
-        let roams = controls.pressed(Control::Roam);
         if roams && hand != Vec2::ZERO {
             let speed = next.distance * (0.5 * FIELD_OF_VIEW).tan();
             next.focus += eye.rotation * hand.extend(0.0) * speed * dt;

@@ -65,7 +65,7 @@ pub(crate) fn hands(
         return;
     }
     match pressed {
-        Pressed::Tapped => pad.swap(&controls),
+        Pressed::Tapped => pad.swap(&controls, eye),
         Pressed::Held => pad.frame = true,
         Pressed::Nothing => {}
     }
@@ -100,9 +100,10 @@ pub(crate) fn hands(
             surface,
         );
     }
+    pad.second(&controls, &aim, eye, view, dt);
     for other in Side::BOTH {
         let holds = pad.latched[other as usize] || pad.held[other as usize];
-        if other != side && !holds {
+        if other != side && !holds && !pad.out {
             pad.poses[other as usize] = Pose {
                 position: rest(eye, other),
                 rotation: eye.rotation,
@@ -145,14 +146,14 @@ pub(crate) fn hands(
 
 impl Pad {
     /// The other hand leads; what this one holds it goes on holding.
-    fn swap(&mut self, controls: &Controls) {
+    fn swap(&mut self, controls: &Controls, eye: &Transform) {
         let other = self.leading.other();
         self.latched[self.leading as usize] = self.grips;
         self.leading = other;
         // Taken back with the button down it is held as before, otherwise let go where it is.
         let held = std::mem::take(&mut self.latched[other as usize]);
         let taken = held && controls.pressed_on(Control::Grab, Device::Pad);
-        if !held {
+        if !held && !self.out {
             // An empty hand begins where the other one is.
             self.poses[other as usize] = self.poses[other.other() as usize];
         }
@@ -162,7 +163,44 @@ impl Pad {
         } else {
             self.grips = taken;
         }
-        self.turn = Quat::IDENTITY;
+        self.turn = if self.out {
+            // It is turned as it was left.
+            (eye.rotation.inverse() * self.poses[other as usize].rotation).normalize()
+        } else {
+            Quat::IDENTITY
+        };
+    }
+
+    /// Where both hands are led at once, the other stick moves the one that does not lead.
+    fn second(&mut self, controls: &Controls, aim: &Aim, eye: &Transform, view: Vec2, dt: f32) {
+        let side = self.leading;
+        let other = side.other();
+        let holds = self.latched[other as usize] || self.held[other as usize];
+        if !aim.both || holds {
+            self.out = false;
+            return;
+        }
+        let bare = !controls.pressed(Control::Deep) && !controls.pressed(Control::Roam);
+        if !bare || view == Vec2::ZERO {
+            return;
+        }
+        let lead = self.poses[side as usize];
+        let pose = &mut self.poses[other as usize];
+        if !std::mem::replace(&mut self.out, true) {
+            // It comes out beside the leading one, an eighth of the view away.
+            let aside = depth(eye, lead.position).max(*REACH.start()) * 0.25;
+            let aside = match other {
+                Side::Left => -aside,
+                Side::Right => aside,
+            };
+            *pose = Pose {
+                position: lead.position + eye.right() * aside,
+                rotation: eye.rotation,
+            };
+        }
+        let away = depth(eye, pose.position).clamp(*REACH.start(), *REACH.end());
+        let speed = away * (0.5 * FIELD_OF_VIEW).tan() * swift(view) * dt;
+        pose.position += (eye.right() * view.x + eye.up() * view.y) * speed;
     }
 
     /// A hand that holds something moves in the plane of the view, or with LT in depth.

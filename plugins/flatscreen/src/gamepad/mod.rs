@@ -5,6 +5,9 @@
 //! | – | leading hand right and up | orbit around the leading hand |
 //! | LT | its depth and roll | its yaw and pitch |
 //! | LB | pan | orbit around the middle |
+//!
+//! In a mode that leads both hands at once ([`Aim::both`](midair_studio::tools::Aim::both)) the bare right
+//! stick moves the other hand right and up instead, beginning beside the leading one.
 
 mod camera;
 mod hands;
@@ -38,6 +41,8 @@ pub struct Pad {
     held: [bool; 2],
     /// How the leading hand is turned against the camera while it is empty.
     turn: Quat,
+    /// The other hand was moved by its own stick, and is where that left it.
+    out: bool,
     swap: Swap,
     /// Components that were picked and not placed yet.
     pub(crate) picked: Vec<String>,
@@ -57,6 +62,7 @@ impl Default for Pad {
             latched: [false; 2],
             held: [false; 2],
             turn: Quat::IDENTITY,
+            out: false,
             swap: Swap::default(),
             picked: Vec::new(),
             frame: false,

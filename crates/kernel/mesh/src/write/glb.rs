@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 
 use bytemuck::cast_slice;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::{Target, View};
@@ -47,6 +47,18 @@ pub(super) fn encode(parts: &[Part], curves: &[Lines]) -> Result<Vec<u8>, WriteR
             .collect::<std::collections::BTreeMap<_, _>>();
         if let Some(normals) = part.normals() {
             attributes.insert(Valid(Semantic::Normals), data.vectors(normals, false));
+        }
+        if !part.uv.is_empty() {
+            // glTF counts from the upper edge of a picture.
+            let uv: Vec<Vec2> = part.uv.iter().map(|p| Vec2::new(p.x, 1.0 - p.y)).collect();
+            let at = data.add(
+                cast_slice(&uv),
+                uv.len(),
+                Type::Vec2,
+                ComponentType::F32,
+                Target::ArrayBuffer,
+            );
+            attributes.insert(Valid(Semantic::TexCoords(0)), at);
         }
         let indices = data.add(
             cast_slice(&part.mesh.triangles),

@@ -7,7 +7,7 @@ mod threemf;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use thiserror::Error;
 
 use crate::rescale::rescaled;
@@ -22,6 +22,8 @@ pub struct Named<T> {
     pub value: T,
     /// How it looks, where that is known; GLB keeps it.
     pub finish: Option<Finish>,
+    /// Where each vertex of a mesh lies on a picture, or nothing; GLB and OBJ keep it.
+    pub uv: Vec<Vec2>,
 }
 
 impl<T> Named<T> {
@@ -31,6 +33,7 @@ impl<T> Named<T> {
             name: name.into(),
             value,
             finish: None,
+            uv: Vec::new(),
         }
     }
 
@@ -38,6 +41,12 @@ impl<T> Named<T> {
     #[must_use]
     pub fn finished(self, finish: Option<Finish>) -> Self {
         Self { finish, ..self }
+    }
+
+    /// The same, its vertices lying there on a picture.
+    #[must_use]
+    pub fn mapped(self, uv: Vec<Vec2>) -> Self {
+        Self { uv, ..self }
     }
 }
 
@@ -225,6 +234,8 @@ struct Part<'a> {
     finish: Option<Finish>,
     /// Positions in the file's unit.
     positions: Vec<Vec3>,
+    /// One for each, or none.
+    uv: &'a [Vec2],
 }
 
 /// A curve ready to be written.
@@ -266,6 +277,11 @@ impl<'a> Part<'a> {
             name: &named.name,
             mesh,
             finish: named.finish,
+            uv: if named.uv.len() == positions.len() {
+                &named.uv
+            } else {
+                &[]
+            },
             positions,
         })
     }

@@ -1,0 +1,626 @@
+//! The four modes as one instrument: what each of them makes is carried into each of the others, used
+//! there, changed at its source, undone, redone, and written without a fault. docs/between-the-modes.md is this
+//! table in words.
+
+use std::f32::consts::TAU;
+
+use bevy::prelude::*;
+use midair_brush::{BRUSH, canvas};
+use midair_csg::ASSEMBLE;
+use midair_document::{Document, ObjectId};
+use midair_field::{Node, Op};
+use midair_mesh::check;
+use midair_scaffold::SCAFFOLD;
+use midair_studio::command::Command;
+use midair_studio::hands::{Action, Pose, Side};
+use midair_studio::objects::{Ask, How};
+use midair_studio::settings::{Draws, Settings, SweepHands, SweepItem, SweepShape};
+use midair_studio::tools::ToolId;
+use midair_sweep::{Phase, SWEEP};
+
+use crate::studio::Studio;
+use crate::sweep::{LEFT, RIGHT};
+
+const R: Side = Side::Right;
+/// Where nothing is.
+const AWAY: Vec3 = Vec3::new(0.0, 4.0, 0.0);
+/// Where things of other modes are made beside the source.
+const BESIDE: Vec3 = Vec3::new(0.9, 1.0, 0.0);
+
+/// What a mode makes, as far as the others tell it apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    Drawn,
+    Loop,
+    Open,
+    Solid,
+    Painting,
+}
+
+/// A thing that a mode makes by gesture, and a place on it.
+struct Source {
+    name: &'static str,
+    what: What,
+    make: fn(&mut Studio) -> (ObjectId, Vec3),
+}
+
+const SOURCES: [Source; 13] = [
+    Source {
+        name: "a component",
+        what: What::Solid,
+        make: component,
+    },
+    Source {
+        name: "a boolean result",
+        what: What::Solid,
+        make: boolean,
+    },
+    Source {
+        name: "a line",
+        what: What::Drawn,
+        make: line,
+    },
+    Source {
+        name: "a stroke",
+        what: What::Drawn,
+        make: stroke,
+    },
+    Source {
+        name: "a closed stroke",
+        what: What::Loop,
+        make: ring,
+    },
+    Source {
+        name: "a filled loop",
+        what: What::Solid,
+        make: filled,
+    },
+    Source {
+        name: "a surface",
+        what: What::Open,
+        make: surface,
+    },
+    Source {
+        name: "an open tube",
+        what: What::Open,
+        make: open_tube,
+    },
+    Source {
+        name: "a plate",
+        what: What::Solid,
+        make: plate,
+    },
+    Source {
+        name: "a tube",
+        what: What::Solid,
+        make: tube,
+    },
+    Source {
+        name: "a pipe",
+        what: What::Solid,
+        make: pipe,
+    },
+    Source {
+        name: "a row of clones",
+        what: What::Solid,
+        make: clones,
+    },
+    Source {
+        name: "a painting",
+        what: What::Painting,
+        make: painting,
+    },
+];
+
+impl Studio {
+    /// The mode in hand, the hands away from everything.
+    fn mode(&mut self, id: ToolId) {
+        self.ask(Command::Mode(id));
+        self.reach(R, AWAY);
+    }
+
+    /// Taken in hand where it is, let go over a mode, and the button let go after it.
+    fn carried(&mut self, id: ObjectId, at: Vec3, to: ToolId) {
+        self.reach(R, at);
+        assert_eq!(
+            self.touched(R),
+            Some(id),
+            "{} at {at}",
+            self.object(id).name
+        );
+        self.press(R, Action::Grab);
+        assert_eq!(self.held().get(R), Some(id));
+        let objects = Vec::new();
+        self.ask(Command::Carry { objects, to });
+        self.frames(2);
+        self.let_go(R, Action::Grab);
+        self.frames(3);
+        self.settle();
+    }
+
+    /// Taken in hand and put down elsewhere.
+    fn shifted(&mut self, id: ObjectId, at: Vec3, by: Vec3) {
+        self.reach(R, at);
+        assert_eq!(
+            self.touched(R),
+            Some(id),
+            "{} at {at}",
+            self.object(id).name
+        );
+        self.press(R, Action::Grab);
+        self.carry_right(at + by);
+        self.let_go(R, Action::Grab);
+        self.frames(2);
+        self.settle();
+    }
+
+    fn dab(&mut self, at: Vec3) {
+        self.reach(R, at);
+        self.click(R, Action::Act);
+        self.settle();
+    }
+
+    fn newest(&self) -> ObjectId {
+        self.document().objects().next_back().expect("something").0
+    }
+
+    /// Written by itself, as a file that has no fault.
+    fn written(&mut self, id: ObjectId) {
+        let path = self.home.path().join("one.stl");
+        let before = self.warnings().len();
+        self.ask(Command::Export {
+            path: path.clone(),
+            step: None,
+            unit: None,
+            only: Some(id),
+            up: None,
+        });
+        self.settle();
+        assert_eq!(self.warnings().len(), before, "{:?}", self.warnings());
+        let report = check(&midair_mesh::read(&path).unwrap().mesh);
+        assert!(
+            report.is_faultless(),
+            "{}: {:?}",
+            self.object(id).name,
+            report.faults()
+        );
+    }
+
+    /// Everything undone, and redone to the same document.
+    fn back_and_forth(&mut self, from: usize) {
+        let last = self.document().content_hash();
+        let steps = self.undo_len();
+        assert!(steps > from);
+        while self.undo_len() > from {
+            self.ask(Command::Undo);
+        }
+        assert!(self.document().is_empty(), "everything is taken back");
+        while self.redo_len() > 0 {
+            self.ask(Command::Redo);
+        }
+        assert_eq!(self.undo_len(), steps);
+        assert_eq!(self.document().content_hash(), last);
+        self.settle();
+    }
+}
+
+fn component(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.mode(ASSEMBLE);
+    let at = Vec3::new(0.0, 1.0, 0.0);
+    let id = s.place("solid/cube", at);
+    s.click(R, Action::Library);
+    (id, at)
+}
+
+fn boolean(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.mode(ASSEMBLE);
+    let (a, b) = (Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.15, 1.15, 0.12));
+    s.place("solid/cube", a);
+    s.place("solid/sphere", b);
+    s.click(R, Action::Library);
+    s.operate();
+    s.mark(Vec3::new(-0.15, 0.85, -0.15), Action::Up);
+    s.mark(Vec3::new(0.28, 1.25, 0.15), Action::Down);
+    s.reach(R, AWAY);
+    s.finish();
+    // SceneOperate is put away.
+    s.click(R, Action::Cancel);
+    (s.only(), Vec3::new(-0.1, 0.9, -0.1))
+}
+
+fn draw(s: &mut Studio, draws: Draws) {
+    s.mode(SCAFFOLD);
+    s.draws(draws);
+}
+
+fn line(s: &mut Studio) -> (ObjectId, Vec3) {
+    draw(s, Draws::Line);
+    s.pull(Vec3::new(-0.2, 1.0, 0.1), Vec3::new(-0.2, 1.0, -0.3));
+    (s.newest(), Vec3::new(-0.2, 1.0, -0.1))
+}
+
+fn stroke(s: &mut Studio) -> (ObjectId, Vec3) {
+    draw(s, Draws::Stroke);
+    let at = |t: f32| Vec3::new(-0.2, 1.0 + 0.06 * (t * 3.0).sin(), 0.1 - 0.4 * t);
+    s.scribble((0..=40).map(|i| at(i as f32 / 40.0)));
+    let id = s.newest();
+    (id, on(s, id))
+}
+
+/// A place on what was drawn.
+fn on(s: &Studio, id: ObjectId) -> Vec3 {
+    let object = s.object(id);
+    let points = object.stroke().expect("a stroke").points();
+    let there = midair_document::affine(&object.placement);
+    there.transform_point3(points[points.len() / 3]).as_vec3()
+}
+
+fn ring(s: &mut Studio) -> (ObjectId, Vec3) {
+    draw(s, Draws::Stroke);
+    let at = |t: f32| {
+        let (y, x) = (t * TAU).sin_cos();
+        Vec3::new(0.2 * x, 1.0, 0.2 * y)
+    };
+    s.scribble((0..=60).map(|i| at(i as f32 / 60.0)));
+    let id = s.newest();
+    assert!(s.object(id).stroke().unwrap().closed, "a ring closes");
+    (id, on(s, id))
+}
+
+fn filled(s: &mut Studio) -> (ObjectId, Vec3) {
+    let (id, _) = ring(s);
+    s.ask(Command::Objects(Ask::Select {
+        ids: vec![id],
+        how: How::Set,
+    }));
+    s.ask(midair_scaffold::Ask::Fill.command());
+    s.frames(2);
+    s.settle();
+    (s.newest(), Vec3::new(0.0, 1.0, 0.0))
+}
+
+/// A bow, swept away from the body.
+fn bowed(s: &mut Studio, shape: SweepShape) -> ObjectId {
+    s.sweeping(shape);
+    s.both(LEFT, RIGHT, 0.7);
+    s.frames(30);
+    let id = s.swipe_away(Vec3::Z * -0.3, 0.7);
+    s.reach(R, AWAY);
+    s.put(Side::Left, Pose::at(Vec3::new(-1.0, 3.0, 0.0)));
+    s.frames(2);
+    id
+}
+
+/// A place on the curve in the middle of a sweep.
+fn within(s: &Studio, id: ObjectId) -> Vec3 {
+    let object = s.object(id);
+    let sweep = object.sweep().expect("a sweep");
+    let rib = &sweep.ribs[sweep.ribs.len() / 2];
+    let mut points = Vec::new();
+    rib.points_into(9, &mut points);
+    object.placement.affine().transform_point3(points[4])
+}
+
+fn surface(s: &mut Studio) -> (ObjectId, Vec3) {
+    let id = bowed(s, SweepShape::Surface);
+    (id, within(s, id))
+}
+
+fn open_tube(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.set("caps", false);
+    let id = bowed(s, SweepShape::Tube);
+    assert!(s.object(id).sheet().is_some());
+    (id, within(s, id))
+}
+
+fn plate(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.set("thickness", 0.03);
+    let id = bowed(s, SweepShape::Surface);
+    (id, within(s, id))
+}
+
+fn tube(s: &mut Studio) -> (ObjectId, Vec3) {
+    let id = bowed(s, SweepShape::Tube);
+    (id, within(s, id))
+}
+
+fn pipe(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.set("caps", false);
+    s.set("thickness", 0.03);
+    let id = bowed(s, SweepShape::Tube);
+    (id, within(s, id))
+}
+
+fn clones(s: &mut Studio) -> (ObjectId, Vec3) {
+    s.set("item", SweepItem::Component("solid/sphere".to_owned()));
+    s.set("clones", 3);
+    s.set("clone_size", 0.1);
+    let id = bowed(s, SweepShape::Clones);
+    let Some(Node::Clones { row, .. }) = s.object(id).recipe().map(|r| r.node()) else {
+        panic!("a row of clones");
+    };
+    let at = row.places()[1].translation;
+    (id, s.placement(id).affine().transform_point3(at))
+}
+
+fn brush(s: &mut Studio) {
+    s.mode(BRUSH);
+    s.ask(Settings::command("brush.radius", 0.08));
+}
+
+fn painting(s: &mut Studio) -> (ObjectId, Vec3) {
+    brush(s);
+    let at = Vec3::new(0.0, 1.0, 0.0);
+    s.dab(at);
+    (s.newest(), at)
+}
+
+/// United with a ball where it is, and that taken from a block: a cutter.
+fn assembled(s: &mut Studio, id: ObjectId, at: Vec3) {
+    let result = {
+        let ball = s.place("solid/sphere", at);
+        s.click(R, Action::Library);
+        assert_eq!(
+            s.marks()
+                .iter()
+                .filter(|(o, _)| *o == id || *o == ball)
+                .count(),
+            1
+        );
+        s.ask(Command::Carry {
+            objects: vec![ball],
+            to: ASSEMBLE,
+        });
+        s.frames(2);
+        s.reach(R, AWAY);
+        s.finish();
+        s.newest()
+    };
+    s.written(result);
+    let block = s.place("solid/cube", at + Vec3::new(0.12, 0.05, 0.04));
+    s.click(R, Action::Library);
+    let whole = check(&s.mesh(block, 0.02)).volume;
+    for (object, op) in [(block, Op::Union), (result, Op::Subtract)] {
+        s.ask(Command::Carry {
+            objects: vec![object],
+            to: ASSEMBLE,
+        });
+        s.frames(2);
+        if op == Op::Subtract {
+            s.operate();
+            s.reach(R, at);
+            // Two things are in one place: which of them the hand touches decides.
+            if s.touched(R) == Some(result) {
+                s.click(R, Action::Down);
+            } else {
+                let pending = vec![(block, Op::Union), (result, op)];
+                s.ask(Command::Edit(midair_document::Edit::SetPending { pending }));
+            }
+        }
+    }
+    assert_eq!(s.marks(), [(block, Op::Union), (result, Op::Subtract)]);
+    s.reach(R, AWAY);
+    s.finish();
+    s.click(R, Action::Cancel);
+    let cut = s.newest();
+    s.written(cut);
+    let left = check(&s.mesh(cut, 0.02)).volume;
+    assert!(left < whole, "{left} of {whole}");
+}
+
+/// Painted with beside itself.
+fn stamped(s: &mut Studio) -> ObjectId {
+    s.dab(BESIDE);
+    let id = s.newest();
+    assert!(
+        canvas(s.object(id)).is_some(),
+        "a painting: {}",
+        s.notices()
+    );
+    s.written(id);
+    id
+}
+
+/// The hands go where a row, or a surface, is swept beside the source.
+fn sweep_beside(s: &mut Studio) -> ObjectId {
+    s.set("hands", SweepHands::Two);
+    let level = |x: f32| Pose {
+        position: BESIDE + Vec3::X * x,
+        rotation: Quat::from_rotation_z(if x < 0.0 { 0.6 } else { -0.6 }),
+    };
+    s.carry(Some(level(-0.25)), Some(level(0.25)));
+    s.frames(30);
+    s.swipe_away(Vec3::Z * -0.2, 0.6)
+}
+
+/// The only line that was said since.
+fn said(s: &Studio, before: usize, word: &str) {
+    let lines = &s.warnings()[before..];
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(lines[0].contains(word), "{lines:?}");
+}
+
+/// What comes of a cell; whether the source may be changed afterwards.
+fn cell(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3, to: &ToolId) {
+    let before = s.warnings().len();
+    s.carried(id, at, to.clone());
+    match (source.what, to.as_str()) {
+        // Assemble.
+        (What::Drawn, "csg") => {
+            said(s, before, "was not filled");
+            assert_eq!(s.marks(), []);
+        }
+        (What::Loop, "csg") => {
+            let made = s.newest();
+            assert_eq!(s.marks(), [(made, Op::Union)]);
+            assembled(s, made, Vec3::new(0.0, 1.0, 0.0));
+        }
+        (What::Open, "csg") => {
+            assert_eq!(
+                s.warnings().len(),
+                before,
+                "one line, and that an offer: {}",
+                s.notices()
+            );
+            assert!(s.swinging().offer.is_some(), "{}", s.notices());
+            s.reach(R, AWAY);
+            s.click(R, Action::Finish);
+            s.settle();
+            assert_eq!(s.marks(), [(id, Op::Union)]);
+            assembled(s, id, at);
+        }
+        (What::Solid | What::Painting, "csg") => {
+            assert_eq!(s.marks(), [(id, Op::Union)]);
+            assembled(s, id, at);
+        }
+        // Scaffold.
+        (What::Drawn | What::Loop, "scaffold") => said(s, before, "Scaffold's already"),
+        (_, "scaffold") => {
+            let lines = s.document().objects().filter(|(_, o)| o.line().is_some());
+            assert_eq!(lines.count(), 12, "the box around it");
+            assert!(s.object(id).dimmed);
+        }
+        // Sweep.
+        (What::Drawn | What::Loop, "sweep") => {
+            s.set("shape", SweepShape::Surface);
+            s.set("thickness", 0.02);
+            s.both(LEFT, RIGHT, 0.3);
+            s.frames(30);
+            let made = s.swipe_away(Vec3::Z * -0.25, 0.3);
+            let ends = s.swept(made).ribs.iter().map(|r| r.points[0]);
+            let to_world = s.placement(made).affine();
+            let rail = s.swinging().rails[0].as_ref().expect("a rail").line.clone();
+            for end in ends {
+                let there = to_world.transform_point3(end).as_dvec3();
+                let on = rail.at(rail.nearest(there)).unwrap();
+                assert!(on.distance(there) < 1e-4, "{there} is not on the rail");
+            }
+            s.written(made);
+        }
+        (What::Open, "sweep") => {
+            assert!(matches!(s.swinging().phase, Phase::Editing { object, .. } if object == id));
+            let ribs = s.swept(id).ribs.clone();
+            s.reach(R, at);
+            s.press(R, Action::Act);
+            s.carry_right(at + Vec3::Y * 0.05);
+            s.let_go(R, Action::Act);
+            s.frames(2);
+            assert_ne!(s.swept(id).ribs, ribs, "bent");
+            s.click(R, Action::Finish);
+        }
+        (_, "sweep") => {
+            s.set("clones", 3);
+            s.set("clone_size", 0.12);
+            s.set("spread", false);
+            let made = sweep_beside(s);
+            assert_ne!(made, id);
+            s.written(made);
+        }
+        // Brush.
+        (What::Drawn | What::Loop, "brush") => {
+            let made = s.newest();
+            assert_eq!(canvas(s.object(made)).map(|c| c.strokes.len()), Some(1));
+            assert!(s.object(id).dimmed);
+            s.written(made);
+        }
+        (What::Open, "brush") => {
+            assert_eq!(
+                s.warnings().len(),
+                before,
+                "one line, and that an offer: {}",
+                s.notices()
+            );
+            s.reach(R, AWAY);
+            s.click(R, Action::Finish);
+            s.settle();
+            assert!(s.object(id).recipe().is_some(), "closed");
+            stamped(s);
+        }
+        (What::Painting, "brush") => {
+            s.dab(at + Vec3::X * 0.1);
+            assert_eq!(canvas(s.object(id)).unwrap().strokes.len(), 2);
+            s.written(id);
+        }
+        (What::Solid, "brush") => {
+            stamped(s);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The source is moved by hand, where it is still there; what follows it does so in the same step.
+fn edited(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3) {
+    if s.document().object(id).is_none() {
+        return;
+    }
+    s.mode(ASSEMBLE);
+    let follows: Vec<ObjectId> = {
+        let all = s.document().objects();
+        let linked = all.filter(|(_, o)| o.links.iter().any(|l| l.source == id));
+        linked.map(|(id, _)| id).collect()
+    };
+    let others = |d: &Document| -> Vec<_> {
+        let rest = d
+            .objects()
+            .filter(|(o, _)| *o != id && !follows.contains(o));
+        rest.map(|(o, x)| (o, x.clone())).collect()
+    };
+    let (rest, steps) = (others(s.document()), s.undo_len());
+    let before: Vec<_> = follows.iter().map(|&o| s.swept(o).ribs.clone()).collect();
+    s.reach(R, at);
+    if s.touched(R) != Some(id) {
+        // Something that was made of it is in front.
+        return;
+    }
+    let by = Vec3::new(-0.05, 0.06, 0.0);
+    s.shifted(id, at, by);
+    assert_eq!(s.undo_len(), steps + 1, "{}", source.name);
+    assert!(
+        others(s.document()) == rest,
+        "what holds it by value is as it was"
+    );
+    for (&object, ribs) in follows.iter().zip(&before) {
+        let after = &s.swept(object).ribs;
+        for (a, b) in after.iter().zip(ribs.iter()) {
+            assert!(
+                (a.points[0] - b.points[0]).distance(by) < 1e-4,
+                "it follows its rail"
+            );
+            assert_eq!(a.points[1], b.points[1]);
+        }
+        s.written(object);
+    }
+}
+
+fn row(to: &ToolId) {
+    for source in &SOURCES {
+        let mut s = Studio::new();
+        let from = s.undo_len();
+        let (id, at) = (source.make)(&mut s);
+        s.settle();
+        println!("{} into {to}", source.name);
+        cell(&mut s, source, id, at, to);
+        edited(&mut s, source, id, at);
+        s.back_and_forth(from);
+    }
+}
+
+#[test]
+fn everything_that_is_made_is_carried_into_assemble() {
+    row(&ASSEMBLE);
+}
+
+#[test]
+fn everything_that_is_made_is_carried_into_scaffold() {
+    row(&SCAFFOLD);
+}
+
+#[test]
+fn everything_that_is_made_is_carried_into_sweep() {
+    row(&SWEEP);
+}
+
+#[test]
+fn everything_that_is_made_is_carried_into_brush() {
+    row(&BRUSH);
+}
