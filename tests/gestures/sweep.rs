@@ -531,8 +531,8 @@ fn a_hundred_thousand_clones_cost_a_frame_nothing() {
         .collect();
     times.sort_by(f64::total_cmp);
     println!(
-        "102,400 clones in {pieces} pieces: a frame takes {:.2} ms in the median, {:.2} at the 99th, {:.2} at most",
-        times[200], times[396], times[399]
+        "102,400 clones in {pieces} pieces: a frame takes {:.2} ms undisturbed, {:.2} in the median, {:.2} at the 99th, {:.2} at most",
+        times[40], times[200], times[396], times[399]
     );
     // For a machine that has other things to do.
     assert!(times[200] < 4.0, "{}", times[200]);
@@ -572,11 +572,12 @@ fn a_frame_while_sweeping_costs_little_more_than_one_at_rest() {
             studio.app_update();
             before.elapsed().as_secs_f64() * 1e3
         };
-        let median = |mut times: Vec<f64>| {
+        // Frames that nothing else on the machine came into, and the median.
+        let figures = |mut times: Vec<f64>| {
             times.sort_by(f64::total_cmp);
-            times[times.len() / 2]
+            [times[times.len() / 10], times[times.len() / 2]]
         };
-        let rest = median((0..200).map(|_| frame(&mut studio, 0.0005)).collect());
+        let rest = figures((0..200).map(|_| frame(&mut studio, 0.0005)).collect());
         studio.press(Side::Right, Action::Act);
         while studio.swinging().ribs.len() < ribs {
             frame(&mut studio, 0.0101);
@@ -590,12 +591,13 @@ fn a_frame_while_sweeping_costs_little_more_than_one_at_rest() {
                 took
             })
             .collect();
-        let sweeping = median(sweeping);
+        let sweeping = figures(sweeping);
         let made = studio.swinging().ribs.len();
         println!(
-            "n = {count}, {made} curves, clones: {clones}: a frame of the main schedule takes {sweeping:.3} ms while sweeping, {rest:.3} at rest; {bytes} bytes sent at most"
+            "n = {count}, {made} curves, clones: {clones}: a frame of the main schedule takes {:.3} ms undisturbed and {:.3} in the median while sweeping, {:.3} and {:.3} at rest; {bytes} bytes sent at most",
+            sweeping[0], sweeping[1], rest[0], rest[1]
         );
         assert!(made < ribs + 40, "{made}");
-        assert!(sweeping < rest + 2.0, "{sweeping} {rest}");
+        assert!(sweeping[0] < rest[0] + 1.0, "{sweeping:?} {rest:?}");
     }
 }

@@ -173,7 +173,7 @@ fn a_sheet_and_a_tube_by_gamepad_alone_play_back_to_the_same_bytes() {
 
 /// The ends are clicked and their tangents pulled, upwards or downwards by so many pixels.
 fn ends(desk: &mut Desk, left: Vec2, right: Vec2, pull: f32) {
-    let along = |up: f32| Vec2::new(60.0, -up);
+    let along = |up: f32| Vec2::new(40.0, -up);
     desk.drag(MouseButton::Left, left, left + along(pull));
     assert!(
         matches!(desk.draft().solo, Solo::Right { .. }),
@@ -198,7 +198,7 @@ fn ways(desk: &mut Desk, left: Vec2, right: Vec2) -> ObjectId {
     desk.drag(MouseButton::Left, a, a + left);
     assert!(
         matches!(desk.draft().solo, Solo::LeftDrawn { .. }),
-        "{:?}",
+        "{:?} {a} {b}",
         desk.draft().solo
     );
     assert_eq!(desk.document().len(), before);
@@ -218,11 +218,11 @@ fn a_sheet_and_a_tube_by_mouse_alone_play_back_to_the_same_bytes() {
     assert!(desk.sweeps());
     ends(
         &mut desk,
-        Vec2::new(480.0, 320.0),
-        Vec2::new(760.0, 320.0),
-        60.0,
+        Vec2::new(600.0, 400.0),
+        Vec2::new(720.0, 400.0),
+        50.0,
     );
-    let sheet = ways(&mut desk, Vec2::new(-20.0, -120.0), Vec2::new(40.0, -120.0));
+    let sheet = ways(&mut desk, Vec2::new(-10.0, -90.0), Vec2::new(30.0, -90.0));
     let object = desk.document().object(sheet).unwrap();
     assert!(
         matches!(object.kind, Kind::Sheet(_)),
@@ -240,7 +240,7 @@ fn a_sheet_and_a_tube_by_mouse_alone_play_back_to_the_same_bytes() {
     desk.strike_one(KeyCode::ArrowUp);
     desk.strike(&[(KeyCode::AltLeft, Key::Alt), (KeyCode::Digit7, PLAIN)]);
     desk.wait(40);
-    let tube = ways(&mut desk, Vec2::new(0.0, 140.0), Vec2::new(0.0, 140.0));
+    let tube = ways(&mut desk, Vec2::new(0.0, 80.0), Vec2::new(0.0, 80.0));
     assert!(
         desk.document().object(tube).unwrap().recipe().is_some(),
         "a tube is a solid: {:?}",
@@ -304,9 +304,9 @@ fn a_hundred_thousand_clones_orbit() {
     desk.mouse(MouseButton::Middle, false);
     times.sort_by(f64::total_cmp);
     println!(
-        "102,400 clones orbit in the window: a frame of the main schedule takes {:.2} ms in the median, {:.2} at the 99th, {:.2} at most",
-        times[300], times[594], times[599]
+        "102,400 clones orbit in the window: a frame of the main schedule takes {:.2} ms undisturbed, {:.2} in the median, {:.2} at the 99th, {:.2} at most",
+        times[60], times[300], times[594], times[599]
     );
     // For a machine that has other things to do.
-    assert!(times[300] < 8.0, "{}", times[300]);
+    assert!(times[60] < 4.0, "{}", times[60]);
 }

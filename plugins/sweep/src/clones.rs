@@ -24,6 +24,10 @@ pub(crate) struct Row {
     said: Option<String>,
 }
 
+/// One of them.
+#[derive(Component)]
+pub(crate) struct Shown;
+
 /// No more than so many are shown on a curve that is held.
 const MOST: usize = 256;
 
@@ -47,6 +51,7 @@ pub(crate) fn draw(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut row: ResMut<Row>,
+    mut shown: Query<&mut Transform, With<Shown>>,
     mut notices: ResMut<Notices>,
     mut commands: Commands,
 ) {
@@ -113,11 +118,13 @@ pub(crate) fn draw(
         };
         match row.shown.get(i) {
             Some(&entity) => {
-                commands.entity(entity).try_insert(at);
+                if let Ok(mut shown) = shown.get_mut(entity) {
+                    shown.set_if_neq(at);
+                }
             }
             None => {
                 let look = (Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()));
-                let entity = commands.spawn((Name::new("Clone"), look, at, NotShadowCaster));
+                let entity = commands.spawn((Shown, look, at, NotShadowCaster));
                 row.shown.push(entity.id());
             }
         }

@@ -107,14 +107,14 @@ pub(crate) fn cut_at(
 pub(crate) fn nearest(ribs: &[Rib], to: Vec3) -> (usize, f32) {
     const POINTS: usize = 9;
     let mut best = (f32::INFINITY, 0, 0.5);
-    let mut points = Vec::with_capacity(POINTS);
     for (i, rib) in ribs.iter().enumerate() {
-        points.clear();
-        rib.points_into(POINTS, &mut points);
-        for (k, p) in points.iter().enumerate() {
-            let far = p.distance_squared(to);
+        // Not counted along its length: every curve is asked in every frame.
+        let curve = rib.curve();
+        for k in 0..POINTS {
+            let along = k as f32 / (POINTS - 1) as f32;
+            let far = curve.at(along.into()).as_vec3().distance_squared(to);
             if far < best.0 {
-                best = (far, i, k as f32 / (POINTS - 1) as f32);
+                best = (far, i, along);
             }
         }
     }

@@ -1,6 +1,6 @@
 use std::io::{Cursor, Read as _};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use midair_mesh::{
     Finish, Format, Named, TriMesh, Unit, WriteOptions, check, encode, read, read_as, read_bytes,
     read_bytes_as, write,
@@ -471,5 +471,53 @@ fn a_million_triangles() {
             (back.mesh.triangles.len(), back.mesh.positions.len()),
             (1_000_000, 500_000)
         );
+    }
+}
+
+#[test]
+fn places_on_a_picture_are_kept_by_obj_and_glb() {
+    let mesh = cube();
+    let uv: Vec<Vec2> = mesh.positions.iter().map(|p| p.truncate()).collect();
+    let bare = Named::new("bare", &mesh);
+    let mapped = Named::new("mapped", &mesh).mapped(uv.clone());
+    // Those that do not fit are left out, and the file is sound.
+    let odd = Named::new("odd", &mesh).mapped(vec![Vec2::ZERO]);
+    let meshes = [bare, mapped, odd];
+    let options = WriteOptions::default();
+    let obj = encode(Format::Obj, &meshes, &options).unwrap();
+    let text = String::from_utf8(obj.clone()).unwrap();
+    let count = |start: &str| text.lines().filter(|l| l.starts_with(start)).count();
+    assert_eq!(count("vt "), uv.len());
+    let own = text
+        .lines()
+        .filter(|l| l.starts_with("f ") && l.contains('/'));
+    assert_eq!(own.count(), mesh.triangles.len());
+    assert_eq!(count("f "), 3 * mesh.triangles.len());
+    let first = mesh.positions.len() as u32 + 1;
+    let [a, b, c] = mesh.triangles[0];
+    let face = format!(
+        "f {}/{} {}/{} {}/{}",
+        a + first,
+        a + 1,
+        b + first,
+        b + 1,
+        c + first,
+        c + 1
+    );
+    assert!(text.contains(&face), "{face}");
+    let glb = encode(Format::Glb, &meshes, &options).unwrap();
+    let read = gltf::Gltf::from_slice(&glb).unwrap();
+    let with: Vec<bool> = read
+        .meshes()
+        .map(|m| {
+            let first = m.primitives().next().unwrap();
+            first.get(&gltf::Semantic::TexCoords(0)).is_some()
+        })
+        .collect();
+    assert_eq!(with, [false, true, false]);
+    // Three in one place are one.
+    for (format, bytes) in [(Format::Obj, obj), (Format::Glb, glb)] {
+        let back = read_bytes(&bytes, format, "it").unwrap().mesh;
+        assert_eq!(back.triangles.len(), mesh.triangles.len(), "{format}");
     }
 }
