@@ -145,6 +145,12 @@ impl Studio {
         }
     }
 
+    /// How many things have a component.
+    pub fn count<T: Component>(&mut self) -> usize {
+        let world = self.app.world_mut();
+        world.query::<&T>().iter(world).count()
+    }
+
     /// One frame and nothing beside it, to be timed.
     pub fn app_update(&mut self) {
         self.app.update();

@@ -390,6 +390,26 @@ fn clones_along_a_curve_drill_a_plate() {
 }
 
 #[test]
+fn nothing_of_it_is_left_in_another_mode() {
+    let mut studio = Studio::new();
+    studio.sweeping(SweepShape::Clones);
+    studio.settle();
+    studio.frames(5);
+    let drawn = |s: &mut Studio| s.count::<Mesh3d>();
+    let with = drawn(&mut studio);
+    assert!(studio.swinging().live.is_some() && with >= 12, "{with}");
+    studio.ask(Command::Mode("csg".to_owned().into()));
+    studio.frames(3);
+    assert!(studio.swinging().live.is_none());
+    assert!(
+        drawn(&mut studio) <= with - 12,
+        "the clones on the curve are gone"
+    );
+    let aim = studio.world().resource::<midair_studio::tools::Aim>();
+    assert_eq!(*aim, midair_studio::tools::Aim::default());
+}
+
+#[test]
 fn what_cannot_be_cloned_says_so() {
     let mut studio = Studio::new();
     studio.sweeping(SweepShape::Clones);

@@ -83,7 +83,8 @@ impl Plugin for BrushPlugin {
                     .after(Deliver),
                 (cue::aim, cue::hints, ghost::lines).in_set(StudioSet::Cue),
             )
-                .run_if(tool_active(BRUSH)),
+                // Each asks anew: the mode may be left between the first of them and the last.
+                .distributive_run_if(tool_active(BRUSH)),
         );
     }
 }

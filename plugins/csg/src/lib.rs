@@ -57,7 +57,8 @@ impl Plugin for AssemblePlugin {
                     .after(Deliver),
                 cue::hints.in_set(StudioSet::Cue),
             )
-                .run_if(tool_active(ASSEMBLE)),
+                // Each asks anew: the mode may be left between the first of them and the last.
+                .distributive_run_if(tool_active(ASSEMBLE)),
         );
     }
 }

@@ -82,7 +82,8 @@ impl Plugin for SweepPlugin {
                 (wires::draw, clones::draw).in_set(StudioSet::Rebuild),
                 (cue::curve, cue::ghosts, cue::hints).in_set(StudioSet::Cue),
             )
-                .run_if(tool_active(SWEEP)),
+                // Each asks anew: the mode may be left between the first of them and the last.
+                .distributive_run_if(tool_active(SWEEP)),
         )
         // Looked for off the frame, and told whatever mode one is in by then.
         .add_systems(Update, write::tell.in_set(StudioSet::Commit))

@@ -128,7 +128,9 @@ impl AddTool for App {
     }
 }
 
-/// A run condition: this tool is in the hands.
+/// A run condition: this tool is in the hands. For systems of several sets it is to be asked for each
+/// (`distributive_run_if`): a mode that is left in [`StudioSet::Ask`] would otherwise do one frame's work
+/// more after it was told so.
 pub fn tool_active(id: ToolId) -> impl Fn(Res<Tools>) -> bool + Clone {
     move |tools| tools.active.as_ref() == Some(&id)
 }
