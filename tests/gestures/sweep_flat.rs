@@ -308,5 +308,5 @@ fn a_hundred_thousand_clones_orbit() {
         times[60], times[300], times[594], times[599]
     );
     // For a machine that has other things to do.
-    assert!(times[60] < 4.0, "{}", times[60]);
+    assert!(times[60] < 20.0, "{}", times[60]);
 }
