@@ -20,8 +20,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use midair_field::{
-    CompileError, FuseError, FuseOptions, Grid, MeshSource, Placement, Program, Recipe,
-    changed_box, fuse, refuse,
+    CompileError, FuseError, FuseOptions, Grid, MeshSource, Placement, Program, Recipe, fuse,
+    refuse_from,
 };
 use midair_mesh::TriMesh;
 use midair_surface::{Cancelled, Surface};
@@ -127,8 +127,7 @@ impl Solid {
         let mut grid = self.grid.clone();
         let mut surface = self.surface.clone();
         let started = Instant::now();
-        let dirty = changed_box(&self.program, &program);
-        let changed = refuse(&mut grid, &program, &dirty, &options(cancel))?;
+        let changed = refuse_from(&mut grid, &self.program, &program, &options(cancel))?;
         let fused = Instant::now();
         surface.update_unless(&grid, &changed, cancel)?;
         Ok(Self {

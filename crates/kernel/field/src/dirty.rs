@@ -1,8 +1,13 @@
+use std::ops::Range;
+
 use glam::Vec3;
 use midair_mesh::Aabb;
+use rustc_hash::FxHashSet;
 
-use crate::fuse::{bricks_touching, fuse_within};
-use crate::program::Outline;
+use crate::fuse::{Still, bricks_touching, fuse_within};
+use crate::grid::cube;
+use crate::leaf::Leaf;
+use crate::program::{Instr, Outline};
 use crate::{BrickCoord, FuseError, FuseOptions, Grid, Op, Program};
 
 /// Steps by which a changed operand's box is widened: nodes next to the surface, and those that
@@ -37,13 +42,7 @@ fn difference(a: &Outline, b: &Outline) -> Aabb {
     if a.parts.is_empty() || b.parts.is_empty() {
         return both;
     }
-    let same = |x: &(Op, Outline), y: &(Op, Outline)| x.0 == y.0 && x.1.key == y.1.key;
-    let shorter = a.parts.len().min(b.parts.len());
-    let pairs = a.parts.iter().zip(&b.parts);
-    let head = pairs.take_while(|(x, y)| same(x, y)).count();
-    let pairs = a.parts.iter().rev().zip(b.parts.iter().rev());
-    let pairs = pairs.take(shorter - head);
-    let tail = pairs.take_while(|(x, y)| same(x, y)).count();
+    let (head, tail) = unchanged(a, b);
     let olds = &a.parts[head..a.parts.len() - tail];
     let news = &b.parts[head..b.parts.len() - tail];
     let paired = olds.len() == news.len() && olds.iter().zip(news).all(|(x, y)| x.0 == y.0);
@@ -63,6 +62,17 @@ fn difference(a: &Outline, b: &Outline) -> Aabb {
     changed
 }
 
+/// How many parts at the head and at the tail are the same.
+fn unchanged(a: &Outline, b: &Outline) -> (usize, usize) {
+    let same = |x: &(Op, Outline), y: &(Op, Outline)| x.0 == y.0 && x.1.key == y.1.key;
+    let shorter = a.parts.len().min(b.parts.len());
+    let pairs = a.parts.iter().zip(&b.parts);
+    let head = pairs.take_while(|(x, y)| same(x, y)).count();
+    let pairs = a.parts.iter().rev().zip(b.parts.iter().rev());
+    let pairs = pairs.take(shorter - head);
+    (head, pairs.take_while(|(x, y)| same(x, y)).count())
+}
+
 /// Brings `grid`, the field of an earlier program, up to date with `program` within the `dirty`
 /// box (from [`changed_box`]), and returns the bricks that now hold something else, sorted.
 ///
@@ -76,6 +86,64 @@ pub fn refuse(
     dirty: &Aabb,
     options: &FuseOptions,
 ) -> Result<Vec<BrickCoord>, FuseError> {
+    renew(grid, program, dirty, None, options)
+}
+
+/// As [`refuse`] with the box in which `before`, whose field `grid` is, and `after` differ. In a painting only
+/// the bricks are evaluated in which a changed stroke is felt, however large its box is.
+///
+/// # Errors
+/// Cancelled, or too many bricks.
+pub fn refuse_from(
+    grid: &mut Grid,
+    before: &Program,
+    after: &Program,
+    options: &FuseOptions,
+) -> Result<Vec<BrickCoord>, FuseError> {
+    let dirty = changed_box(before, after);
+    let step = after.step();
+    let Some((olds, news)) = strokes_changed(before, after).filter(|_| grid.step() == step) else {
+        return renew(grid, after, &dirty, None, options);
+    };
+    let still = |centre: Vec3, half: f32| {
+        let quiet = |leaf: &Leaf, chunks: &Range<usize>| {
+            let block = leaf.block(centre, half, after.around() + 1.0e-3 * step);
+            let painting = leaf.painting();
+            painting.is_some_and(|p| !p.reaches(chunks.clone(), &block, leaf.local(step)))
+        };
+        quiet(&before.leaves[0], &olds) && quiet(&after.leaves[0], &news)
+    };
+    renew(grid, after, &dirty, Some(&still), options)
+}
+
+/// Changed chunks beyond which it is not worth asking each of them about every block.
+const FEW: usize = 64;
+
+/// The chunks of a painting that are not as they were, in the one before and the one after; `None` where more
+/// is different than a few of them.
+fn strokes_changed(before: &Program, after: &Program) -> Option<(Range<usize>, Range<usize>)> {
+    let ([Instr::Load(0)], [Instr::Load(0)]) = (&before.tape[..], &after.tape[..]) else {
+        return None;
+    };
+    let (a, b) = (before.leaves.first()?, after.leaves.first()?);
+    let (old, new) = (before.outline.as_ref()?, after.outline.as_ref()?);
+    let known =
+        a.painting()?.chunks() == old.parts.len() && b.painting()?.chunks() == new.parts.len();
+    if !known || !a.stands_as(b) {
+        return None;
+    }
+    let (head, tail) = unchanged(old, new);
+    let (olds, news) = (head..old.parts.len() - tail, head..new.parts.len() - tail);
+    (olds.len() + news.len() <= FEW).then_some((olds, news))
+}
+
+fn renew(
+    grid: &mut Grid,
+    program: &Program,
+    dirty: &Aabb,
+    still: Option<Still>,
+    options: &FuseOptions,
+) -> Result<Vec<BrickCoord>, FuseError> {
     let everywhere = Aabb::new(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX));
     let other = grid.step() != program.step();
     let dirty = if other { &everywhere } else { dirty };
@@ -83,14 +151,18 @@ pub fn refuse(
         return Ok(Vec::new());
     }
     let (low, high) = bricks_touching(dirty, program.step());
-    let mut fresh = fuse_within(program, Some((low, high)), options)?;
+    let (mut fresh, kept) = fuse_within(program, Some((low, high)), still, options)?;
+    let kept: FxHashSet<BrickCoord> = kept
+        .into_iter()
+        .flat_map(|(first, side)| cube(first, side))
+        .collect();
     let mut changed = Vec::new();
     if other {
         changed.extend(grid.bricks().map(|(c, _)| c));
         *grid = Grid::new(program.step());
     }
     for c in grid.coords_within(low, high) {
-        if fresh.brick(c).is_none() {
+        if fresh.brick(c).is_none() && !kept.contains(&c) {
             grid.set(c, None);
             changed.push(c);
         }

@@ -1,3 +1,4 @@
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{IVec3, Vec3};
@@ -58,20 +59,28 @@ pub enum FuseError {
 /// # Errors
 /// Cancelled, or too many bricks.
 pub fn fuse(program: &Program, options: &FuseOptions) -> Result<Grid, FuseError> {
-    fuse_within(program, None, options)
+    Ok(fuse_within(program, None, None, options)?.0)
 }
 
-/// As [`fuse`], only the bricks from `range.0` to `range.1`, both included.
+/// A cube of bricks: its first, and how many are on a side.
+pub(crate) type Cube = (BrickCoord, i32);
+
+/// Whether φ is as it was no further than two steps from a cube, given by its centre and half its side.
+pub(crate) type Still<'a> = &'a (dyn Fn(Vec3, f32) -> bool + Sync);
+
+/// As [`fuse`], only the bricks from `range.0` to `range.1`, both included, but for the cubes that
+/// are `still`: these are named.
 pub(crate) fn fuse_within(
     program: &Program,
     range: Option<(BrickCoord, BrickCoord)>,
+    still: Option<Still>,
     options: &FuseOptions,
-) -> Result<Grid, FuseError> {
+) -> Result<(Grid, Vec<Cube>), FuseError> {
     let step = program.step();
     let mut grid = Grid::new(step);
     let region = program.bounds().grown(step);
     if region.is_empty() {
-        return Ok(grid);
+        return Ok((grid, Vec::new()));
     }
     let too_fine = FuseError::TooFine {
         step,
@@ -85,7 +94,7 @@ pub(crate) fn fuse_within(
     if let Some(range) = range {
         (low, high) = (low.max(range.0), high.min(range.1));
         if low.cmpgt(high).any() {
-            return Ok(grid);
+            return Ok((grid, Vec::new()));
         }
     }
     let reach = region.min.abs().max(region.max.abs()).max_element();
@@ -95,6 +104,8 @@ pub(crate) fn fuse_within(
         low,
         high,
         slack,
+        still,
+        kept: Mutex::default(),
     };
     let mut level = 3u32;
     while ((high >> level) - (low >> level)).max_element() >= 4 {
@@ -111,7 +122,7 @@ pub(crate) fn fuse_within(
         if cancelled(options) {
             return Err(FuseError::Cancelled);
         }
-        let below: Vec<(Vec<Block>, Vec<IVec3>)> = blocks
+        let below: Vec<(Vec<Block>, Vec<(IVec3, u32)>)> = blocks
             .par_iter()
             .with_min_len(4)
             .map(|b| descent.children(b, level))
@@ -119,7 +130,7 @@ pub(crate) fn fuse_within(
         blocks = Vec::with_capacity(below.iter().map(|b| b.0.len()).sum());
         for (near, inside) in below {
             blocks.extend(near);
-            for c in inside {
+            for (c, level) in inside {
                 grid.fill_inside(c << level, 1 << level);
             }
         }
@@ -145,7 +156,7 @@ pub(crate) fn fuse_within(
             grid.set(block.coord, brick);
         }
     }
-    Ok(grid)
+    Ok((grid, descent.kept.into_inner().unwrap_or_default()))
 }
 
 fn grid_inside(grid: &mut Grid) -> impl FnMut(IVec3, u32) {
@@ -176,13 +187,16 @@ struct Descent<'a> {
     high: BrickCoord,
     /// How far bounds of φ may be off by rounding.
     slack: f32,
+    still: Option<Still<'a>>,
+    /// What is still.
+    kept: Mutex<Vec<Cube>>,
 }
 
 impl Descent<'_> {
-    fn children(&self, block: &Block, level: u32) -> (Vec<Block>, Vec<IVec3>) {
+    fn children(&self, block: &Block, level: u32) -> (Vec<Block>, Vec<(IVec3, u32)>) {
         let mut inside = Vec::new();
         let near = cube(block.coord * 2, 2)
-            .filter_map(|c| self.visit(c, level, &block.tape, &mut |c, _| inside.push(c)))
+            .filter_map(|c| self.visit(c, level, &block.tape, &mut |c, l| inside.push((c, l))))
             .collect();
         (near, inside)
     }
@@ -203,6 +217,12 @@ impl Descent<'_> {
         let nodes = (BRICK << level) as f32;
         let centre = (coord.as_vec3() * nodes + 0.5 * (nodes - 1.0)) * step;
         let half = 0.5 * (nodes - 1.0) * step;
+        if self.still.is_some_and(|still| still(centre, half)) {
+            if let Ok(mut kept) = self.kept.lock() {
+                kept.push((low, 1 << level));
+            }
+            return None;
+        }
         // For rounding, and for values lifted to 1e-4 steps; wider above than below, so that what
         // is settled on a large block would be settled on each of its bricks as well.
         let slack = self.slack * (1.0 + 0.25 * level as f32);

@@ -83,7 +83,26 @@ impl Leaf {
             }
     }
 
-    fn block(&self, centre: Vec3, half: f32, around: f32) -> Block {
+    /// The painting that it is.
+    pub fn painting(&self) -> Option<&Painting> {
+        match &self.source {
+            Source::Canvas(painting) => Some(painting),
+            _ => None,
+        }
+    }
+
+    /// Whether two leaves have one frame.
+    pub fn stands_as(&self, other: &Self) -> bool {
+        self.to_local == other.to_local
+    }
+
+    /// Steps of the world in metres of its own, at least.
+    pub fn local(&self, step: f32) -> f32 {
+        step / self.scale
+    }
+
+    /// The cube of half side `half` about `centre` and `around` it, in its own frame too.
+    pub fn block(&self, centre: Vec3, half: f32, around: f32) -> Block {
         let c = self.to_local.transform_point3(centre);
         Block {
             within: Aabb::around(c, self.extent * half + self.reach * around),

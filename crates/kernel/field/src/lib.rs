@@ -24,7 +24,7 @@ mod view;
 pub use canvas::{
     CANVAS_THRESHOLD, Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke,
 };
-pub use dirty::{changed_box, refuse};
+pub use dirty::{changed_box, refuse, refuse_from};
 pub use fuse::{FuseError, FuseOptions, fuse};
 pub use grid::{BRICK, Brick, BrickCoord, Grid};
 pub use hash::RecipeHash;

@@ -127,6 +127,9 @@ impl Painting {
                 }
                 inked.slope =
                     family.slopes()[0] * stroke.weight / (family.reach * thinnest * shrink);
+                // A led point has very many: each is named after the stroke's name and its own points.
+                let mut bytes = Vec::with_capacity(32 + 16 * (CHUNK + 1));
+                bytes.extend(name.so_far());
                 let mut from = first;
                 while from < self.segments.len() {
                     let to = (from + CHUNK).min(self.segments.len());
@@ -138,7 +141,11 @@ impl Painting {
                         }
                     }
                     let own = &points[from - first..(to - first + 1).min(points.len())];
-                    let key = name.clone().with(own.iter().flat_map(|p| p.to_array()));
+                    bytes.truncate(32);
+                    for x in own.iter().flat_map(|p| p.to_array()) {
+                        bytes.extend((x + 0.0).to_bits().to_le_bytes());
+                    }
+                    let key = *blake3::hash(&bytes).as_bytes();
                     chunks.push((transformed(&all, &outer), from, to, key));
                     from = to;
                 }
@@ -231,7 +238,6 @@ impl Painting {
 }
 
 /// What names a chunk: everything about its stroke but its points.
-#[derive(Clone)]
 struct Name(blake3::Hasher);
 
 impl Name {
@@ -268,6 +274,11 @@ impl Name {
 
     fn with(mut self, xs: impl IntoIterator<Item = f32>) -> [u8; 32] {
         self.numbers(xs);
+        *self.0.finalize().as_bytes()
+    }
+
+    /// What it comes to so far.
+    fn so_far(&self) -> [u8; 32] {
         *self.0.finalize().as_bytes()
     }
 }

@@ -124,7 +124,8 @@ pub(super) fn half_space(x: f32) -> f32 {
     let x = x.clamp(-1.0, 1.0);
     let x2 = x * x;
     let f = 0.5 - 35.0 / 32.0 * x * (1.0 - x2 * (1.0 - x2 * (0.6 - x2 / 7.0)));
-    f.clamp(0.0, 1.0)
+    // Nothing at all where it ends, whatever the rounding.
+    if x < 1.0 { f.clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The greatest slope of [`half_space`].

@@ -1,8 +1,11 @@
 //! A painting: strokes with skeletons that melt into one convolution surface (3DBrushVR §3–4).
 
+mod bounds;
 mod build;
 mod kernel;
+mod nodes;
 mod paint;
+mod reach;
 mod stroke;
 
 pub(crate) use build::{Bench, Part};

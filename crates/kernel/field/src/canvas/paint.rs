@@ -1,7 +1,11 @@
 use glam::{Affine3A, IVec3, Vec2, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Edge, Family, HALF_SPACE_SLOPE, T, clearance, half_space, power};
+use super::kernel::{Edge, Family, T, clearance, half_space};
+use super::nodes::{
+    Layers, axis, blended, erase_from, erased, join, join_inner, line, moved, nearest, polygon,
+    profile, raise,
+};
 use super::stroke::HARD;
 use crate::Program;
 use crate::scratch::Scratch;
@@ -11,10 +15,8 @@ use crate::shape::{NODES, Points};
 pub(super) const CHUNK: usize = 8;
 /// Chunks that are looked up together.
 pub(super) const GROUP: usize = 32;
-/// Chunks in one block beyond which bounds are not worth their time.
-const MANY: usize = 200;
 /// Steps from the surface within which the distance to what is felt nowhere is told apart.
-const FAR: f32 = 3.0;
+pub(super) const FAR: f32 = 3.0;
 
 /// A canvas made ready for evaluation, in its own frame.
 #[derive(Clone, Debug)]
@@ -88,7 +90,7 @@ pub(super) struct Chunk {
 impl Segment {
     /// The squared distance to it in its own radii: the least of |p − c(t)|² / r(t)² along the way.
     #[inline(always)]
-    fn at(&self, x: f32, y: f32, z: f32) -> f32 {
+    pub(super) fn at(&self, x: f32, y: f32, z: f32) -> f32 {
         let (b, r, w) = (self.along, self.radius, self.wider);
         let (qx, qy, qz) = (x - self.from.x, y - self.from.y, z - self.from.z);
         let qq = qx * qx + qy * qy + qz * qz;
@@ -106,7 +108,7 @@ impl Segment {
         (dx * dx + dy * dy + dz * dz) / (wide * wide)
     }
 
-    fn thinnest(&self) -> f32 {
+    pub(super) fn thinnest(&self) -> f32 {
         self.radius.min(self.radius + self.wider)
     }
 }
@@ -130,19 +132,9 @@ pub(crate) struct Block {
     pub half: f32,
 }
 
-/// Potential and inverse scale at the nodes of a brick.
-struct Layers {
-    /// Σ F of what was painted, and Σ F/scale.
-    felt: [f32; NODES],
-    fine: [f32; NODES],
-    /// The potential so far; its p-th power while strokes are painted.
-    all: [f32; NODES],
-    one: [f32; NODES],
-}
-
 impl Painting {
     /// The chunks felt in a box, by stroke.
-    fn within(&self, b: &Aabb) -> Vec<u32> {
+    pub(super) fn within(&self, b: &Aabb) -> Vec<u32> {
         let mut found = Vec::new();
         for (g, group) in self.groups.iter().enumerate() {
             if !touch(group, b) {
@@ -450,362 +442,24 @@ impl Painting {
             .map(away)
             .fold(f32::INFINITY, f32::min)
     }
-
-    /// Bounds of F, and of the strokes' scales, in a block.
-    fn felt(&self, block: &Block) -> Option<Felt> {
-        let chunks = self.within(&block.within);
-        if chunks.len() > MANY {
-            return None;
-        }
-        let mut felt = Felt::default();
-        let mut rest = &chunks[..];
-        while let Some(&first) = rest.first() {
-            let index = self.chunks[first as usize].stroke;
-            let n = rest
-                .iter()
-                .take_while(|c| self.chunks[**c as usize].stroke == index)
-                .count();
-            let (own, after) = rest.split_at(n);
-            rest = after;
-            let stroke = &self.strokes[index as usize];
-            let (c, radius) = match &stroke.to_local {
-                None => (block.centre, block.radius),
-                Some(m) => {
-                    let columns = [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis];
-                    let most = columns
-                        .iter()
-                        .map(|c| c.length_squared())
-                        .sum::<f32>()
-                        .sqrt();
-                    (m.transform_point3(block.centre), block.radius * most)
-                }
-            };
-            let family = &self.family;
-            let mut scales = (stroke.scale, stroke.scale);
-            let mut slope = stroke.slope;
-            let (low, high) = match &stroke.kind {
-                Inking::Points => {
-                    let (mut near, mut far) = (f32::INFINITY, f32::INFINITY);
-                    for i in own {
-                        let chunk = &self.chunks[*i as usize];
-                        for s in &self.segments[chunk.from as usize..chunk.to as usize] {
-                            let (u, r) = (s.at(c.x, c.y, c.z).sqrt(), radius / s.thinnest());
-                            near = near.min(u - r);
-                            far = far.min(u + r);
-                        }
-                    }
-                    let near = near.max(0.0);
-                    (family.at_point(far * far), family.at_point(near * near))
-                }
-                Inking::Line(from, along, length, inverse) => {
-                    let (d2, s0) = axis(*from, *along, *inverse, c.x, c.y, c.z);
-                    let here = family.at_line(d2, s0, s0 + length * inverse);
-                    let slope = stroke.slope / stroke.weight * block.radius;
-                    let s = (-s0).clamp(0.0, length * inverse);
-                    let d = (d2 + (s0 + s) * (s0 + s)).sqrt() - radius * inverse;
-                    (here - slope, (here + slope).min(family.at_axis(d.max(0.0))))
-                }
-                Inking::Polygon(area) => {
-                    let here = area.at(family, c);
-                    let slope = stroke.slope / stroke.weight * block.radius;
-                    let h = ((c - area.origin).dot(area.axes[2]).abs() - radius) * area.inverse;
-                    (
-                        here - slope,
-                        (here + slope).min(family.at_plane(h.max(0.0))),
-                    )
-                }
-                Inking::Field(program, radius) => {
-                    let (low, high) = program.bounds_of(block.world, block.half);
-                    slope = if low >= *radius || high <= -radius {
-                        // Wholly outside or inside of where it falls off.
-                        0.0
-                    } else {
-                        let steep = program.steepest(block.world, block.half);
-                        let steep = steep.unwrap_or(f32::INFINITY);
-                        slope * stroke.weight * HALF_SPACE_SLOPE / radius * steep
-                    };
-                    (half_space(high / radius), half_space(low / radius))
-                }
-                Inking::Canvas(painting) => {
-                    let m = stroke.to_local.unwrap_or(Affine3A::IDENTITY);
-                    let inside = Block {
-                        within: crate::recipe::transformed(&block.within, &m),
-                        centre: c,
-                        radius,
-                        ..*block
-                    };
-                    let inner = painting.felt(&inside)?;
-                    slope = stroke.weight * inner.slope / stroke.scale;
-                    if inner.widest > 0.0 {
-                        scales = (inner.finest * stroke.scale, inner.widest * stroke.scale);
-                    }
-                    (inner.low, inner.high)
-                }
-            };
-            // Rounding, here and in the closed forms.
-            let low = stroke.weight * (low - 4.0e-5).max(0.0);
-            let high = stroke.weight * (high + 4.0e-5).max(0.0);
-            felt.slope += slope;
-            if stroke.erase {
-                (felt.low, felt.high) = (erased(felt.low, high), erased(felt.high, low));
-                continue;
-            }
-            felt.low = blended(felt.low, low, self.blend);
-            felt.high = blended(felt.high, high, self.blend);
-            felt.finest = felt.finest.min(scales.0);
-            felt.widest = felt.widest.max(scales.1);
-        }
-        felt.low -= 1.0e-4 * felt.low.abs();
-        felt.high += 1.0e-4 * felt.high.abs();
-        Some(felt)
-    }
-
-    /// Bounds of φ in a block, metres of the canvas; `local_step` as in [`Place`].
-    pub fn range(&self, block: &Block, local_step: f32) -> (f32, f32) {
-        let Some(felt) = self.felt(block) else {
-            return (f32::MIN, f32::MAX);
-        };
-        let none = (self.least * T).min((FAR + 1.0) * local_step);
-        if felt.widest <= 0.0 || felt.high <= 0.0 {
-            return (none, f32::MAX);
-        }
-        let at = |f: f32| {
-            let d = T - f;
-            let (a, b) = (d * felt.finest, d * felt.widest);
-            (a.min(b), a.max(b))
-        };
-        let low = at(felt.high).0;
-        if felt.low > 0.0 {
-            (low, at(felt.low).1)
-        } else {
-            (low.min(none), f32::MAX)
-        }
-    }
-
-    /// What a zero of φ within one metre of a node would make of |φ| there at most; `None` where
-    /// that is not known.
-    pub fn steepest(&self, block: &Block) -> Option<f32> {
-        let felt = self.felt(block)?;
-        let steepest = (felt.slope * felt.widest).max(1.0);
-        steepest.is_finite().then_some(steepest)
-    }
-}
-
-/// Bounds in a block.
-struct Felt {
-    low: f32,
-    high: f32,
-    /// Of the scales of what was painted.
-    finest: f32,
-    widest: f32,
-    slope: f32,
-}
-
-impl Default for Felt {
-    fn default() -> Self {
-        Self {
-            low: 0.0,
-            high: 0.0,
-            finest: f32::INFINITY,
-            widest: 0.0,
-            slope: 0.0,
-        }
-    }
 }
 
 impl Area {
     #[inline(always)]
-    fn at(&self, family: &Family, p: Vec3) -> f32 {
+    pub(super) fn at(&self, family: &Family, p: Vec3) -> f32 {
         let (flat, height) = self.flat(p);
         family.at_polygon(&self.edges, flat, height)
     }
 
     /// A place in the polygon's plane and above it, in supports.
     #[inline(always)]
-    fn flat(&self, p: Vec3) -> (Vec2, f32) {
+    pub(super) fn flat(&self, p: Vec3) -> (Vec2, f32) {
         let q = (p - self.origin) * self.inverse;
         let flat = Vec2::new(q.dot(self.axes[0]), q.dot(self.axes[1]));
         (flat, q.dot(self.axes[2]))
     }
 }
 
-fn touch(a: &Aabb, b: &Aabb) -> bool {
+pub(super) fn touch(a: &Aabb, b: &Aabb) -> bool {
     a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
-}
-
-/// The squared distance from a line's axis and where its start lies along it, in supports.
-#[inline(always)]
-fn axis(from: Vec3, along: Vec3, inverse: f32, x: f32, y: f32, z: f32) -> (f32, f32) {
-    let (qx, qy, qz) = (
-        (from.x - x) * inverse,
-        (from.y - y) * inverse,
-        (from.z - z) * inverse,
-    );
-    let s = qx * along.x + qy * along.y + qz * along.z;
-    let (ex, ey, ez) = (qx - s * along.x, qy - s * along.y, qz - s * along.z);
-    (ex * ex + ey * ey + ez * ez, s)
-}
-
-fn moved(points: &Points, m: &Affine3A) -> Points {
-    let mut out = Points {
-        x: [0.0; NODES],
-        y: [0.0; NODES],
-        z: [0.0; NODES],
-        centre: m.transform_point3(points.centre),
-        radius: 0.0,
-    };
-    let c = m.matrix3;
-    let most = [c.x_axis, c.y_axis, c.z_axis]
-        .iter()
-        .map(|c| c.length_squared())
-        .sum::<f32>();
-    out.radius = points.radius * most.sqrt();
-    for i in 0..NODES {
-        let p = m.transform_point3(Vec3::new(points.x[i], points.y[i], points.z[i]));
-        (out.x[i], out.y[i], out.z[i]) = (p.x, p.y, p.z);
-    }
-    out
-}
-
-/// (aᵖ + bᵖ)^(1/p).
-fn blended(a: f32, b: f32, p: f32) -> f32 {
-    if p >= HARD {
-        a.max(b)
-    } else if p == 1.0 {
-        a + b
-    } else {
-        power(power(a, p) + power(b, p), 1.0 / p)
-    }
-}
-
-/// What is left of the potential `f` where `e` is taken away: (held below 2T) − e, not below 0.
-/// What lies above 2T goes first, so that nothing changes where e is 0.
-#[inline(always)]
-fn erased(f: f32, e: f32) -> f32 {
-    let over = f - held(f);
-    let ramp = (4.0 * e).clamp(0.0, 1.0);
-    let left = f - e - over * (ramp * ramp * (3.0 - 2.0 * ramp));
-    if left > 0.0 { left } else { 0.0 }
-}
-
-/// f below T, 2T from 2T on, smooth between and at both ends.
-#[inline(always)]
-fn held(f: f32) -> f32 {
-    let x = ((f - T) / T).clamp(0.0, 1.0);
-    let low = if f < T { f } else { T };
-    low + T * x * (1.0 + x - x * x)
-}
-
-fn erase_from(all: &mut [f32; NODES], one: &[f32; NODES]) {
-    for (a, e) in all.iter_mut().zip(one) {
-        *a = erased(*a, *e);
-    }
-}
-
-fn join(layers: &mut Layers, fine: f32) {
-    for i in 0..NODES {
-        layers.felt[i] += layers.one[i];
-        layers.fine[i] += layers.one[i] * fine;
-    }
-}
-
-fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inked) {
-    let scale = 1.0 / stroke.scale;
-    for (i, fine) in fine.iter().enumerate() {
-        layers.felt[i] += layers.one[i];
-        layers.fine[i] += layers.one[i] * fine * scale;
-    }
-}
-
-/// Makes a loop over the nodes twice, once for wider registers: the same bits either way.
-macro_rules! wide {
-    ($name:ident, $wide:ident, $body:ident, ($($arg:ident: $type:ty),*)) => {
-        fn $name($($arg: $type),*) {
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has AVX2, as just asked.
-                return unsafe { $wide($($arg),*) };
-            }
-            $body($($arg),*);
-        }
-
-        #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx2")]
-        fn $wide($($arg: $type),*) {
-            $body($($arg),*);
-        }
-    };
-}
-
-wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
-wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
-wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
-wide!(polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
-wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
-
-#[inline(always)]
-fn nearest_any(s: &Segment, p: &Points, out: &mut [f32; NODES]) {
-    for (i, o) in out.iter_mut().enumerate() {
-        let u = s.at(p.x[i], p.y[i], p.z[i]);
-        *o = if u < *o { u } else { *o };
-    }
-}
-
-#[inline(always)]
-fn profile_any(family: &Family, weight: f32, out: &mut [f32; NODES]) {
-    for o in out {
-        *o = weight * family.at_point(*o);
-    }
-}
-
-#[inline(always)]
-fn raise_any(out: &mut [f32; NODES], p: f32) {
-    for o in out {
-        *o = power(*o, p);
-    }
-}
-
-#[inline(always)]
-fn line_any(
-    family: &Family,
-    from: Vec3,
-    along: Vec3,
-    length: f32,
-    inverse: f32,
-    weight: f32,
-    p: &Points,
-    out: &mut [f32; NODES],
-) {
-    for (i, o) in out.iter_mut().enumerate() {
-        let (d2, s0) = axis(from, along, inverse, p.x[i], p.y[i], p.z[i]);
-        *o = weight * family.at_line(d2, s0, s0 + length * inverse);
-    }
-}
-
-#[inline(always)]
-fn polygon_any(family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]) {
-    let [x, y, z] = area.axes.map(|a| a * area.inverse);
-    let o = area.axes.map(|a| a.dot(area.origin) * area.inverse);
-    // A layer of nodes at a time, so that what is summed up stays at hand.
-    for from in (0..NODES).step_by(64) {
-        let (mut u, mut v, mut h2) = ([0.0f32; 64], [0.0f32; 64], [0.0f32; 64]);
-        for k in 0..64 {
-            let (px, py, pz) = (p.x[from + k], p.y[from + k], p.z[from + k]);
-            u[k] = px * x.x + py * x.y + pz * x.z - o[0];
-            v[k] = px * y.x + py * y.y + pz * y.z - o[1];
-            let h = px * z.x + py * z.y + pz * z.z - o[2];
-            h2[k] = h * h;
-        }
-        let (mut sum, mut angle) = ([0.0f32; 64], [0.0f32; 64]);
-        for edge in &area.edges {
-            for k in 0..64 {
-                let (s, t) = edge.at(u[k], v[k], h2[k]);
-                sum[k] += s;
-                angle[k] += t;
-            }
-        }
-        for k in 0..64 {
-            out[from + k] = weight * family.polygon_of(sum[k], angle[k], h2[k]);
-        }
-    }
 }

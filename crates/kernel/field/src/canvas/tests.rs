@@ -7,7 +7,7 @@ use super::kernel::T;
 use super::*;
 use crate::{
     Brick, FuseOptions, Grid, Node, Op, Operand, Placement, Primitive, Program, Recipe,
-    changed_box, fuse, refuse,
+    changed_box, fuse, refuse, refuse_from,
 };
 
 fn canvas(strokes: Vec<Stroke>) -> Canvas {
@@ -328,6 +328,29 @@ fn same(a: &Grid, b: &Grid) {
     }
 }
 
+/// What a surface and its normals are made from is the same: signs everywhere, values within two steps of it.
+fn alike(a: &Grid, b: &Grid, step: f32) {
+    let mut coords = a.sorted_coords();
+    coords.extend(b.sorted_coords());
+    for c in coords {
+        for n in crate::grid::cube(c * 8, 8) {
+            assert_eq!(a.is_inside(n), b.is_inside(n), "node {n}");
+        }
+        let near = |v: f32| v.abs() <= 2.0 * step;
+        match (a.brick(c), b.brick(c)) {
+            (Some(Brick::Values { values: v, .. }), Some(Brick::Values { values: w, .. })) => {
+                for (x, y) in v.iter().zip(w.iter()) {
+                    assert!(x == y || !(near(*x) || near(*y)), "{c} {x} {y}");
+                }
+            }
+            (Some(Brick::Values { values, .. }), _) | (_, Some(Brick::Values { values, .. })) => {
+                assert!(!values.iter().any(|v| near(*v)), "{c}");
+            }
+            _ => {}
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -373,11 +396,43 @@ proptest! {
                 changed.strokes.insert(i, more.clone());
             }
             let after = compile(&of(&changed), step);
+            let mut felt = grid.clone();
+            refuse_from(&mut felt, &before, &after, &FuseOptions::default()).unwrap();
             let dirty = changed_box(&before, &after);
             refuse(&mut grid, &after, &dirty, &FuseOptions::default()).unwrap();
-            same(&grid, &fuse(&after, &FuseOptions::default()).unwrap());
+            let anew = fuse(&after, &FuseOptions::default()).unwrap();
+            same(&grid, &anew);
+            alike(&felt, &anew, step);
         }
         painted.strokes.clear();
+    }
+}
+
+/// Where an edit ends within what is wholly inside.
+#[test]
+fn an_edit_of_a_large_solid_leaves_its_inside() {
+    let ball = canvas(vec![Stroke::point(Vec3::ZERO, 0.5)]);
+    let before = program(&ball, 0.01);
+    let old = fuse(&before, &FuseOptions::default()).unwrap();
+    for i in 0..6 {
+        let t = i as f32;
+        let at = 0.42 * Vec3::new(t.sin(), t.cos(), (2.0 * t).sin()).normalize();
+        for erase in [true, false] {
+            let stroke = Stroke {
+                erase,
+                ..Stroke::point(at, 0.12)
+            };
+            let mut strokes = ball.strokes.clone();
+            strokes.push(stroke);
+            let after = program(&canvas(strokes), 0.01);
+            let anew = fuse(&after, &FuseOptions::default()).unwrap();
+            let (mut boxed, mut felt) = (old.clone(), old.clone());
+            let dirty = changed_box(&before, &after);
+            refuse(&mut boxed, &after, &dirty, &FuseOptions::default()).unwrap();
+            refuse_from(&mut felt, &before, &after, &FuseOptions::default()).unwrap();
+            same(&boxed, &anew);
+            alike(&felt, &anew, 0.01);
+        }
     }
 }
 

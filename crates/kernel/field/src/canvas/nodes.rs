@@ -1,0 +1,194 @@
+//! What is done at every node of a brick, in loops that become vector code.
+
+use glam::{Affine3A, Vec3};
+
+use super::kernel::{Family, T, power};
+use super::paint::{Area, Inked, Segment};
+use super::stroke::HARD;
+use crate::shape::{NODES, Points};
+
+/// Potential and inverse scale at the nodes of a brick.
+pub(super) struct Layers {
+    /// Σ F of what was painted, and Σ F/scale.
+    pub felt: [f32; NODES],
+    pub fine: [f32; NODES],
+    /// The potential so far; its p-th power while strokes are painted.
+    pub all: [f32; NODES],
+    pub one: [f32; NODES],
+}
+/// The squared distance from a line's axis and where its start lies along it, in supports.
+#[inline(always)]
+pub(super) fn axis(from: Vec3, along: Vec3, inverse: f32, x: f32, y: f32, z: f32) -> (f32, f32) {
+    let (qx, qy, qz) = (
+        (from.x - x) * inverse,
+        (from.y - y) * inverse,
+        (from.z - z) * inverse,
+    );
+    let s = qx * along.x + qy * along.y + qz * along.z;
+    let (ex, ey, ez) = (qx - s * along.x, qy - s * along.y, qz - s * along.z);
+    (ex * ex + ey * ey + ez * ez, s)
+}
+
+pub(super) fn moved(points: &Points, m: &Affine3A) -> Points {
+    let mut out = Points {
+        x: [0.0; NODES],
+        y: [0.0; NODES],
+        z: [0.0; NODES],
+        centre: m.transform_point3(points.centre),
+        radius: 0.0,
+    };
+    let c = m.matrix3;
+    let most = [c.x_axis, c.y_axis, c.z_axis]
+        .iter()
+        .map(|c| c.length_squared())
+        .sum::<f32>();
+    out.radius = points.radius * most.sqrt();
+    for i in 0..NODES {
+        let p = m.transform_point3(Vec3::new(points.x[i], points.y[i], points.z[i]));
+        (out.x[i], out.y[i], out.z[i]) = (p.x, p.y, p.z);
+    }
+    out
+}
+
+/// (aᵖ + bᵖ)^(1/p).
+pub(super) fn blended(a: f32, b: f32, p: f32) -> f32 {
+    if p >= HARD {
+        a.max(b)
+    } else if p == 1.0 {
+        a + b
+    } else {
+        power(power(a, p) + power(b, p), 1.0 / p)
+    }
+}
+
+/// What is left of the potential `f` where `e` is taken away: (held below 2T) − e, not below 0.
+/// What lies above 2T goes first, so that nothing changes where e is 0.
+#[inline(always)]
+pub(super) fn erased(f: f32, e: f32) -> f32 {
+    let over = f - held(f);
+    let ramp = (4.0 * e).clamp(0.0, 1.0);
+    let left = f - e - over * (ramp * ramp * (3.0 - 2.0 * ramp));
+    if left > 0.0 { left } else { 0.0 }
+}
+
+/// f below T, 2T from 2T on, smooth between and at both ends.
+#[inline(always)]
+fn held(f: f32) -> f32 {
+    let x = ((f - T) / T).clamp(0.0, 1.0);
+    let low = if f < T { f } else { T };
+    low + T * x * (1.0 + x - x * x)
+}
+
+pub(super) fn erase_from(all: &mut [f32; NODES], one: &[f32; NODES]) {
+    for (a, e) in all.iter_mut().zip(one) {
+        *a = erased(*a, *e);
+    }
+}
+
+pub(super) fn join(layers: &mut Layers, fine: f32) {
+    for i in 0..NODES {
+        layers.felt[i] += layers.one[i];
+        layers.fine[i] += layers.one[i] * fine;
+    }
+}
+
+pub(super) fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inked) {
+    let scale = 1.0 / stroke.scale;
+    for (i, fine) in fine.iter().enumerate() {
+        layers.felt[i] += layers.one[i];
+        layers.fine[i] += layers.one[i] * fine * scale;
+    }
+}
+
+/// Makes a loop over the nodes twice, once for wider registers: the same bits either way.
+macro_rules! wide {
+    ($name:ident, $wide:ident, $body:ident, ($($arg:ident: $type:ty),*)) => {
+        pub(super) fn $name($($arg: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the processor has AVX2, as just asked.
+                return unsafe { $wide($($arg),*) };
+            }
+            $body($($arg),*);
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn $wide($($arg: $type),*) {
+            $body($($arg),*);
+        }
+    };
+}
+
+wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
+wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
+wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
+wide!(polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
+wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
+
+#[inline(always)]
+fn nearest_any(s: &Segment, p: &Points, out: &mut [f32; NODES]) {
+    for (i, o) in out.iter_mut().enumerate() {
+        let u = s.at(p.x[i], p.y[i], p.z[i]);
+        *o = if u < *o { u } else { *o };
+    }
+}
+
+#[inline(always)]
+fn profile_any(family: &Family, weight: f32, out: &mut [f32; NODES]) {
+    for o in out {
+        *o = weight * family.at_point(*o);
+    }
+}
+
+#[inline(always)]
+fn raise_any(out: &mut [f32; NODES], p: f32) {
+    for o in out {
+        *o = power(*o, p);
+    }
+}
+
+#[inline(always)]
+fn line_any(
+    family: &Family,
+    from: Vec3,
+    along: Vec3,
+    length: f32,
+    inverse: f32,
+    weight: f32,
+    p: &Points,
+    out: &mut [f32; NODES],
+) {
+    for (i, o) in out.iter_mut().enumerate() {
+        let (d2, s0) = axis(from, along, inverse, p.x[i], p.y[i], p.z[i]);
+        *o = weight * family.at_line(d2, s0, s0 + length * inverse);
+    }
+}
+
+#[inline(always)]
+fn polygon_any(family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]) {
+    let [x, y, z] = area.axes.map(|a| a * area.inverse);
+    let o = area.axes.map(|a| a.dot(area.origin) * area.inverse);
+    // A layer of nodes at a time, so that what is summed up stays at hand.
+    for from in (0..NODES).step_by(64) {
+        let (mut u, mut v, mut h2) = ([0.0f32; 64], [0.0f32; 64], [0.0f32; 64]);
+        for k in 0..64 {
+            let (px, py, pz) = (p.x[from + k], p.y[from + k], p.z[from + k]);
+            u[k] = px * x.x + py * x.y + pz * x.z - o[0];
+            v[k] = px * y.x + py * y.y + pz * y.z - o[1];
+            let h = px * z.x + py * z.y + pz * z.z - o[2];
+            h2[k] = h * h;
+        }
+        let (mut sum, mut angle) = ([0.0f32; 64], [0.0f32; 64]);
+        for edge in &area.edges {
+            for k in 0..64 {
+                let (s, t) = edge.at(u[k], v[k], h2[k]);
+                sum[k] += s;
+                angle[k] += t;
+            }
+        }
+        for k in 0..64 {
+            out[from + k] = weight * family.polygon_of(sum[k], angle[k], h2[k]);
+        }
+    }
+}
