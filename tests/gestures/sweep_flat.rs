@@ -68,7 +68,7 @@ impl Desk {
 }
 
 /// What was written is a solid without fault, and the recording ends in the same bytes.
-fn plays_back(desk: Desk, recording: &PathBuf) {
+fn plays_back(desk: Desk, recording: &Path) {
     assert_eq!(desk.warnings(), [] as [String; 0]);
     let Desk { app, home, .. } = desk;
     // The recording ends with the app.
