@@ -2,8 +2,9 @@
 //!
 //! A test that drives real devices cannot count frames: it waits until what it did has arrived. `said.jsonl` gets a line of
 //! JSON for each frame; `asks.ron` is read as it grows, a command a line, and asked for as a panel
-//! would. Two lines are for the test alone: `boards` has the panels of the room told from then on, with the place of each word,
-//! and `eyes FILE.png` takes a picture of what both eyes see in the headset.
+//! would. Three lines are for the test alone: `boards` has the panels of the room told from then on, with the place of each word;
+//! `eyes FILE.png` takes a picture of what both eyes see in the headset; `parts FILE.json` writes where the time of the frames went
+//! since the line before.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -13,7 +14,7 @@ use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use midair_openxr::Life;
 use midair_openxr::input::Controllers;
-use midair_playback::{Arrivals, Parts, PartsPlugin};
+use midair_playback::{Arrivals, Counted, Parts, PartsPlugin};
 use midair_space::boards::Board;
 use midair_space::{Boards, Wands};
 use midair_studio::StudioSet;
@@ -60,7 +61,7 @@ impl Plugin for RehearsalPlugin {
         .add_plugins(PartsPlugin)
         .add_systems(Update, hear.in_set(StudioSet::Gather).before(WriteHands))
         .add_systems(First, count)
-        .add_systems(Last, (tell, figures.run_if(on_message::<AppExit>)).chain());
+        .add_systems(Last, tell.after(Counted));
     }
 }
 
@@ -100,6 +101,8 @@ struct Standing<'a> {
     boards: Vec<BoardSaid>,
     /// Pictures of both eyes that are written.
     eyes: usize,
+    /// How often panels were laid out, and the milliseconds of it.
+    laid_out: (u64, f64),
 }
 
 /// One panel of the room, in metres of world.
@@ -135,9 +138,9 @@ fn count(life: Option<Res<Life>>, mut parts: ResMut<Parts>) {
 }
 
 /// Where the frames' time went.
-fn figures(talk: Res<Talk>, parts: Res<Parts>) {
+fn figures(parts: &Parts, file: &Path) {
     if let Ok(text) = serde_json::to_string_pretty(&parts.figures()) {
-        let _ = std::fs::write(talk.asks.with_file_name("parts.json"), text);
+        let _ = std::fs::write(file, text);
     }
 }
 
@@ -145,7 +148,7 @@ fn hear(
     mut talk: ResMut<Talk>,
     mut asks: MessageWriter<Command>,
     mut notices: ResMut<Notices>,
-    mut seen: ResMut<EyesSeen>,
+    (mut seen, mut parts): (ResMut<EyesSeen>, ResMut<Parts>),
     mut commands: Commands,
 ) {
     let Ok(mut file) = File::open(&talk.asks) else {
@@ -165,6 +168,9 @@ fn hear(
             talk.boards = true;
         } else if let Some(file) = line.strip_prefix("eyes ") {
             seen.look(file.into(), &mut commands);
+        } else if let Some(file) = line.strip_prefix("parts ") {
+            figures(&parts, Path::new(file));
+            parts.restart();
         } else {
             match ron::from_str::<Command>(line) {
                 Ok(command) => {
@@ -299,6 +305,10 @@ fn tell(world: &mut World) {
             Vec::new()
         },
         eyes: world.resource::<EyesSeen>().written,
+        laid_out: world.get_resource::<Boards>().map_or((0, 0.0), |b| {
+            let (times, took) = b.laid_out();
+            (times, took.as_secs_f64() * 1e3)
+        }),
     };
     let Ok(line) = serde_json::to_string(&standing) else {
         return;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use midair_studio::command::Command;
-use midair_studio::hands::Side;
+use midair_studio::hands::{Action, Side};
 use serde_json::Value;
 
 use crate::calls::{FRAME, START};
@@ -72,6 +72,16 @@ pub fn each_call(folder: &Path) -> Result<()> {
         "     {} calls of a frame, refused in turn: a line each",
         FRAME.len()
     );
+    // A pulse is felt when the ring opens, and is asked of the runtime.
+    fail("xrApplyHapticFeedback -1\n")?;
+    performer.press(&mut app, Side::Right, Action::Menu, true)?;
+    app.until("a refused pulse is spoken of", |now| {
+        now["warnings"]
+            .to_string()
+            .contains("xrApplyHapticFeedback")
+    })?;
+    fail("")?;
+    performer.press(&mut app, Side::Right, Action::Menu, false)?;
     // The one that ends everything.
     fail("xrPollEvent -13\n")?;
     app.until("the runtime is lost", |now| now["life"] == "Lost")?;

@@ -1,13 +1,14 @@
-//! Where a frame's time goes in the headset, with the chair open and hands that move. Shown, not judged: a machine that
-//! draws with its processor has less of it for the rest.
+//! Where a frame's time goes in the headset, with the chair open and hands that move: without panels, and with some open and a wand
+//! on one. Shown, not judged: a machine that draws with its processor has less of it for the rest.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use bevy::math::{Quat, Vec3};
+use midair_studio::command::Command;
 use midair_studio::hands::{Pose, Side};
 use serde_json::Value;
 
@@ -15,7 +16,10 @@ use crate::life::{focus, quit};
 use crate::perform::Performer;
 use crate::stage::{App, Runtime, midair};
 
-/// The chair, both hands around it, a table of the schedule's own time.
+/// Frames that are looked at.
+const FRAMES: u16 = 120;
+
+/// The chair, both hands around it, tables of the schedule's own time.
 pub fn chair(folder: &Path) -> Result<()> {
     let chair = folder.join("chair.midair").display().to_string();
     midair(&["play", "/job/assets/sessions/chair.ron", "--save", &chair])?;
@@ -27,22 +31,66 @@ pub fn chair(folder: &Path) -> Result<()> {
         "     from the command to the first frame in focus: {:.2} s",
         app.focused
     );
+    panel(&mut app, "tutorial", false)?;
     app.until("the chair is drawn", |now| now["busy"] == 0)?;
-    let begin = Instant::now();
-    while begin.elapsed() < Duration::from_secs(6) {
-        let t = begin.elapsed().as_secs_f32();
-        for (side, x) in [(Side::Left, -0.2), (Side::Right, 0.2)] {
-            let around = Vec3::new(x + 0.15 * t.sin(), 0.5 + 0.2 * t.cos(), 0.1);
-            performer.rig.hands[side as usize].pose = Pose {
-                position: around,
-                rotation: Quat::from_rotation_y(0.3 * t.sin()),
-            };
+    let around = |t: f32, x: f32| Pose {
+        position: Vec3::new(x + 0.15 * t.sin(), 0.5 + 0.2 * t.cos(), 0.1),
+        rotation: Quat::from_rotation_y(0.3 * t.sin()),
+    };
+    table(folder, "no panel", &mut performer, &mut app, |t| {
+        [around(t, -0.2), around(t, 0.2)]
+    })?;
+    for id in ["library", "outline", "settings"] {
+        panel(&mut app, id, true)?;
+    }
+    // Pictures of shapes are made once.
+    performer.frames(&mut app, 60)?;
+    // The left hand shows its wrist, the right one's wand wanders over what is before the eyes.
+    table(folder, "four panels", &mut performer, &mut app, |t| {
+        let wand = Pose {
+            position: Vec3::new(0.1, 1.3, 0.3),
+            rotation: Quat::from_rotation_y(0.4 * (0.7 * t).sin())
+                * Quat::from_rotation_x(0.35 + 0.2 * t.cos()),
+        };
+        [Pose::at(Vec3::new(-0.22, 1.15, 0.2)), wand]
+    })?;
+    quit(&mut app)
+}
+
+fn panel(app: &mut App, id: &str, open: bool) -> Result<()> {
+    app.ask(&Command::Panel {
+        id: id.to_owned(),
+        open,
+    })
+}
+
+/// Moves the hands for a while, and shows where the time of those frames went.
+fn table(
+    folder: &Path,
+    what: &str,
+    performer: &mut Performer,
+    app: &mut App,
+    hands: impl Fn(f32) -> [Pose; 2],
+) -> Result<()> {
+    let path = folder.join("parts.json");
+    let shown = path.display();
+    performer.frames(app, 10)?;
+    app.say(&format!("parts {shown}"))?;
+    let laid = |now: &Value| {
+        let number = |i: usize| now["laid_out"][i].as_f64().unwrap_or(0.0);
+        (number(0), number(1))
+    };
+    let (begin, before) = (Instant::now(), laid(&app.now));
+    for frame in 0..FRAMES {
+        let both = hands(0.05 * f32::from(frame));
+        for side in Side::BOTH {
+            performer.rig.hands[side as usize].pose = both[side as usize];
         }
         performer.rig.send()?;
-        std::thread::sleep(Duration::from_millis(11));
+        performer.frames(app, 1)?;
     }
-    quit(&mut app)?;
-    let path = folder.join("talk/parts.json");
+    let took = begin.elapsed().as_secs_f64();
+    app.say(&format!("parts {shown}"))?;
     // The whole frame, then its parts by name.
     let (main, parts): (Value, BTreeMap<String, Value>) =
         serde_json::from_str(&fs::read_to_string(&path).context("parts.json")?)?;
@@ -51,7 +99,10 @@ pub fn chair(folder: &Path) -> Result<()> {
     if parts.is_empty() || whole == 0.0 {
         bail!("no frame in the headset was counted: {main}");
     }
-    println!("     ms of a frame         median   share     99 %");
+    println!(
+        "     {what}, ms of a frame  median   share     99 %   ({:.0} frames a second)",
+        f64::from(FRAMES) / took
+    );
     for (name, part) in &parts {
         let median = figure(part, "median");
         println!(
@@ -64,6 +115,13 @@ pub fn chair(folder: &Path) -> Result<()> {
         "     the schedule itself  {:>7.3}           {:>7.3}",
         figure(&main, "median"),
         figure(&main, "p99")
+    );
+    let after = laid(&app.now);
+    let (times, ms) = (after.0 - before.0, after.1 - before.1);
+    println!(
+        "     panels laid out {:.2} times a frame, {:.2} ms each",
+        times / f64::from(FRAMES),
+        ms / times.max(1.0)
     );
     Ok(())
 }

@@ -13,6 +13,7 @@ use midair_studio::project::{Answer, Then};
 use serde_json::Value;
 
 use crate::perform::Performer;
+use crate::room::{LIBRARY, WRIST, Wand};
 use crate::stage::{App, Guard, Runtime, midair, until};
 
 /// Waits until the controllers are the app's.
@@ -162,8 +163,7 @@ pub fn tracking(folder: &Path) -> Result<()> {
 pub fn alone(folder: &Path) -> Result<()> {
     let _runtime = Runtime::remote()?;
     let mut performer = Performer::new()?;
-    performer.rig.hands[0].active = false;
-    performer.rig.send()?;
+    performer.off(Side::Left)?;
     let mut app = App::start(folder, &["--vr"])?;
     focus(&mut app)?;
     app.until("it says that one controller is alone", |now| {
@@ -193,6 +193,16 @@ pub fn alone(folder: &Path) -> Result<()> {
     if app.now["panels"].to_string().contains("\"library\"") {
         bail!("the library was opened");
     }
+    // What hangs on a wrist stands before the body of who has none to look at, and the only wand clicks it.
+    app.say("boards")?;
+    let mut wand = Wand { performer, app };
+    wand.opened(WRIST)?;
+    wand.click(WRIST, "Library")?;
+    wand.opened(LIBRARY)?;
+    let Wand {
+        mut performer,
+        mut app,
+    } = wand;
     // The other one is switched on.
     performer.rig.hands[0].active = true;
     performer.rig.send()?;

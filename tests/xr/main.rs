@@ -7,8 +7,10 @@ mod calls;
 mod faults;
 mod frames;
 mod life;
+mod looks;
 mod perform;
 mod profiles;
+mod room;
 mod scenario;
 mod stage;
 mod wire;
@@ -27,13 +29,15 @@ struct Scenario {
 
 /// Those that are no session.
 fn own() -> impl Iterator<Item = Scenario> {
-    let all: [(&str, fn(&Path) -> Result<()>); 12] = [
+    let all: [(&str, fn(&Path) -> Result<()>); 14] = [
         ("absent", life::absent),
         ("from-flat", life::from_flat),
         ("tracking", life::tracking),
         ("alone", life::alone),
         ("attention", life::attention),
         ("killed", life::killed),
+        ("room", room::room),
+        ("looks", looks::looks),
         ("index", profiles::index),
         ("touch", profiles::touch),
         ("wmr", profiles::wmr),

@@ -116,6 +116,13 @@ impl Performer {
         self.settle(app)
     }
 
+    /// A controller is switched off.
+    pub fn off(&mut self, side: Side) -> Result<()> {
+        self.want[side as usize].pose = None;
+        self.write();
+        self.rig.send()
+    }
+
     /// A button goes down or up, and has.
     pub fn press(&mut self, app: &mut App, side: Side, action: Action, down: bool) -> Result<()> {
         self.want[side as usize].down.set(action, down);

@@ -118,6 +118,10 @@ impl Runtime {
             .env("XRT_COMPOSITOR_NULL", "1")
             .env("XRT_NO_STDIN", "1")
             .env("REMOTE_LOG", "info")
+            // Otherwise it has the app sleep for as long as its slowest frames took, and forgets them slowly: after a few that
+            // hung, an app that could draw thirty frames a second draws one.
+            .env("U_PACING_APP_IMMEDIATE_WAIT_FRAME_RETURN", "true")
+            .env("U_PACING_APP_USE_MIN_FRAME_PERIOD", "true")
             .stdin(Stdio::null())
             .stdout(log("monado.log")?)
             .stderr(log("monado.log")?)

@@ -33,7 +33,7 @@ pub use expect::Expectation;
 pub use frames::{Frame, FrameRun, FrameRunBuilder, FrameRunFault};
 pub use hands_only::{HandsOnlyFault, MAX_SPEED, SpeedGate, check_hands_only};
 pub use parse::SessionError;
-pub use parts::{Parts, PartsPlugin};
+pub use parts::{Counted, Parts, PartsPlugin};
 pub use player::{Next, Player, PlayerPlugin, prepare};
 pub use record::{Recorder, RecorderPlugin};
 pub use recording::{RecordError, Recording};

@@ -62,6 +62,10 @@ impl Parts {
     }
 }
 
+/// The end of what is counted of a frame, in [`Last`]: what comes after it is nobody's share.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Counted;
+
 /// Marks between the parts of a frame. Left out unless asked for: each is a point at which the frame's systems meet.
 pub struct PartsPlugin;
 
@@ -87,7 +91,7 @@ impl Plugin for PartsPlugin {
         .add_systems(Update, end::<5>.after(Commit).before(Rebuild))
         .add_systems(Update, end::<6>.after(Rebuild).before(Cue))
         .add_systems(Update, end::<7>.after(Cue))
-        .add_systems(Last, end::<8>);
+        .add_systems(Last, end::<8>.in_set(Counted));
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bevy::prelude::World;
 use bevy_egui::egui::{
-    self, Align2, Color32, ColorImage, FontId, Rect, Response, RichText, Sense, TextureHandle,
-    TextureOptions, Ui, Vec2, vec2,
+    self, Align2, Color32, ColorImage, FontId, Rect, Response, RichText, Sense, TextStyle,
+    TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use midair_field::RecipeHash;
 use midair_library::{Component, OWN};
@@ -310,7 +310,7 @@ impl LibraryPanel {
                 ),
             }
         }
-        let font = FontId::proportional(12.0);
+        let font = TextStyle::Small.resolve(ui.style());
         let mut job = egui::text::LayoutJob::simple_singleline(component.name.clone(), font, text);
         job.wrap = egui::text::TextWrapping::truncate_at_width(size.x - 6.0);
         let galley = ui.fonts_mut(|f| f.layout_job(job));

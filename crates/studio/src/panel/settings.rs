@@ -25,8 +25,9 @@ const CHOICES: [(&str, &[&str]); 5] = [
 ];
 
 /// Bounds of numbers that have sensible ones.
-const RANGES: [(&str, f64, f64); 10] = [
+const RANGES: [(&str, f64, f64); 11] = [
     ("comfort.interface_scale", 0.6, 2.0),
+    ("comfort.sharpness", 0.5, 2.0),
     ("comfort.pointer_angle", -30.0, 60.0),
     ("comfort.haptics", 0.0, 1.0),
     ("comfort.snap_turn", 0.0, 90.0),
@@ -228,6 +229,7 @@ fn label(key: &str) -> String {
         "look.motion" => "Things ease into their places".to_owned(),
         "compute.backend" => "Solids are made by".to_owned(),
         "comfort.interface_scale" => "Size of panels in a headset".to_owned(),
+        "comfort.sharpness" => "Sharpness, from when the headset is entered".to_owned(),
         "comfort.pointer_angle" => "Wands point down by (degrees)".to_owned(),
         "comfort.haptics" => "Strength of pulses".to_owned(),
         "comfort.snap_turn" => "Turn by grip and stick (degrees)".to_owned(),

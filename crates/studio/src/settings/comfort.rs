@@ -16,6 +16,8 @@ pub enum Desktop {
 pub struct ComfortSettings {
     /// Panels, labels and text in the room, as a multiple of their usual size.
     pub interface_scale: f32,
+    /// Pixels of each eye's image along an edge, as a multiple of what the headset asks for; taken up when it is entered.
+    pub sharpness: f32,
     /// How far a wand points below its controller, in degrees.
     pub pointer_angle: f32,
     /// How strongly controllers pulse, 0 to 1.
@@ -38,6 +40,7 @@ impl Default for ComfortSettings {
     fn default() -> Self {
         Self {
             interface_scale: 1.0,
+            sharpness: 1.0,
             pointer_angle: 0.0,
             haptics: 0.7,
             snap_turn: 30.0,

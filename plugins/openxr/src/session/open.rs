@@ -8,7 +8,10 @@ use bevy_mod_openxr::resources::{OxrCurrentSessionConfig, OxrFrameWaiter, OxrSwa
 use bevy_mod_openxr::session::{OxrSession, OxrSessionCreateNextChain};
 use bevy_mod_openxr::types::{SwapchainCreateFlags, SwapchainCreateInfo, SwapchainUsageFlags};
 use bevy_mod_xr::spaces::XrPrimaryReferenceSpace;
-use openxr::{EnvironmentBlendMode, ReferenceSpaceType, ViewConfigurationType};
+use midair_studio::settings::Settings;
+use openxr::{
+    EnvironmentBlendMode, ReferenceSpaceType, ViewConfigurationType, ViewConfigurationView,
+};
 
 use super::Link;
 use crate::frame::{RenderParts, ToRender, Trouble, close_views, open_views};
@@ -95,11 +98,9 @@ fn make(
             reason: "it offers no image format with 8 bits a colour".to_owned(),
         });
     };
+    let sharpness = world.get_resource::<Settings>();
     let config = OxrCurrentSessionConfig {
-        resolution: UVec2::new(
-            eye.recommended_image_rect_width,
-            eye.recommended_image_rect_height,
-        ),
+        resolution: resolution(eye, sharpness.map_or(1.0, |s| s.comfort.sharpness)),
         format,
     };
     let swapchain = session
@@ -146,6 +147,23 @@ fn make(
     Ok((parts, waiter))
 }
 
+/// Pixels of one eye: so many times what the runtime asks for along each edge, as far as it allows.
+fn resolution(eye: &ViewConfigurationView, sharpness: f32) -> UVec2 {
+    let times = if sharpness.is_finite() {
+        sharpness.clamp(0.25, 4.0)
+    } else {
+        1.0
+    };
+    let most = [eye.max_image_rect_width, eye.max_image_rect_height];
+    let asked = [
+        eye.recommended_image_rect_width,
+        eye.recommended_image_rect_height,
+    ];
+    // A runtime that names no bound gets what it asks for and no more.
+    let of = |i: usize| ((asked[i] as f32 * times) as u32).clamp(1, most[i].max(asked[i]).max(1));
+    UVec2::new(of(0), of(1))
+}
+
 /// The room one stands in: its floor where the runtime knows it, otherwise one that is guessed.
 fn room(
     connection: &Connection,
@@ -172,4 +190,30 @@ fn room(
 /// Where a floor is guessed, in the space that begins at the eyes.
 pub(crate) fn below_the_eyes() -> Isometry3d {
     Isometry3d::from_translation(Vec3::new(0.0, -EYES, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_eye_is_as_sharp_as_is_wished_and_as_the_runtime_allows() {
+        let eye = ViewConfigurationView {
+            recommended_image_rect_width: 1000,
+            max_image_rect_width: 1500,
+            recommended_image_rect_height: 1200,
+            max_image_rect_height: 4000,
+            recommended_swapchain_sample_count: 1,
+            max_swapchain_sample_count: 1,
+        };
+        assert_eq!(resolution(&eye, 1.0), UVec2::new(1000, 1200));
+        assert_eq!(resolution(&eye, 2.0), UVec2::new(1500, 2400));
+        assert_eq!(resolution(&eye, 0.5), UVec2::new(500, 600));
+        assert_eq!(resolution(&eye, f32::NAN), UVec2::new(1000, 1200));
+        let bare = ViewConfigurationView {
+            max_image_rect_width: 0,
+            ..eye
+        };
+        assert_eq!(resolution(&bare, 2.0).x, 1000);
+    }
 }

@@ -12,7 +12,7 @@ use super::{BoardId, wrist};
 use crate::ring::Ring;
 
 /// The most that a board is tall, in points; what has more scrolls.
-pub(super) const TALLEST: f32 = 560.0;
+pub(super) const TALLEST: f32 = 660.0;
 
 /// How large a board is before it was drawn, in points.
 pub(super) fn size(id: BoardId) -> Vec2 {
@@ -66,7 +66,11 @@ pub(super) fn style(ctx: &Context, look: &LookSettings) {
     style.interaction.tooltip_delay = 0.6;
     ctx.set_style_of(theme, style);
     // A hand trembles more than a mouse.
-    ctx.options_mut(|o| o.input_options.max_click_dist = 14.0);
+    ctx.options_mut(|o| {
+        o.input_options.max_click_dist = 14.0;
+        // Who aims with a wand takes as long as it takes: a press that is let go on a button is a click.
+        o.input_options.max_click_duration = f64::from(u16::MAX);
+    });
 }
 
 /// What a board shows in one pass, and what came of it.

@@ -1,6 +1,7 @@
 //! Which boards there are, and what is laid out on them in a frame.
 
 use std::mem;
+use std::time::Instant;
 
 use bevy::prelude::*;
 use bevy_egui::EguiClipboard;
@@ -161,7 +162,10 @@ pub(crate) fn paint(world: &mut World) {
                 let due = board.stale || changed || !board.events.is_empty();
                 let waited = now >= board.next;
                 if due || waited && mem::take(&mut idle) {
+                    let began = Instant::now();
                     lay_out(world, boards, &mut board, now, &mut asks);
+                    boards.laid_out.0 += 1;
+                    boards.laid_out.1 += began.elapsed();
                 }
             }
             picture::update(world, &mut board);

@@ -12,6 +12,7 @@ mod place;
 mod wrist;
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use bevy::math::Affine3A;
 use bevy::prelude::*;
@@ -207,6 +208,8 @@ pub struct Boards {
     page: Page,
     /// Whether the wrist's board was taken off and put somewhere.
     pinned: bool,
+    /// How often boards were laid out, and for how long.
+    laid_out: (u64, Duration),
 }
 
 impl Default for Boards {
@@ -219,6 +222,7 @@ impl Default for Boards {
             typing: None,
             page: Page::default(),
             pinned: false,
+            laid_out: (0, Duration::ZERO),
         }
     }
 }
@@ -227,6 +231,11 @@ impl Boards {
     /// One of them, if it is open.
     pub fn get(&self, id: BoardId) -> Option<&Board> {
         self.all.get(&id).filter(|b| b.open)
+    }
+
+    /// How often boards were laid out so far and made ready to be drawn, and what that took.
+    pub fn laid_out(&self) -> (u64, Duration) {
+        self.laid_out
     }
 
     /// All that are open.

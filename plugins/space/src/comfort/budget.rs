@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
+use midair_studio::hands::Side;
 use midair_studio::settings::Settings;
 
 use crate::labels::{Label, LabelKey, Labels, Weight};
@@ -58,7 +59,11 @@ pub(crate) fn tell(
         return;
     }
     let [mean, worst, rate] = pace.shown;
-    let hand = stance.hand(settings.hands.off());
+    let off = settings.hands.off();
+    let outwards = match off {
+        Side::Left => -1.0,
+        Side::Right => 1.0,
+    };
     let late = if worst > BUDGET {
         Weight::Warning
     } else {
@@ -66,7 +71,8 @@ pub(crate) fn tell(
     };
     labels.say(Label {
         key: LabelKey::Budget,
-        at: hand.position + Vec3::new(0.0, -0.06, 0.04),
+        // Over the panel on the wrist, which it would cover before it.
+        at: stance.hand(off).position + Vec3::new(0.16 * outwards, 0.17, 0.06),
         text: format!("{mean:.1} ms of {BUDGET:.1} (most {worst:.1})   {rate:.0} Hz"),
         weight: late,
         ..Label::default()

@@ -118,7 +118,8 @@ pub(crate) fn buttons(
             let at = hand.position + hand.rotation * part.label();
             gizmos.line(
                 world.point(from),
-                world.point(at),
+                // It ends where the name begins, not across its letters.
+                world.point(from.lerp(at, 0.6)),
                 Color::srgba(0.75, 0.75, 0.80, 0.8),
             );
             labels.say(Label {
