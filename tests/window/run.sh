@@ -59,8 +59,8 @@ mkdir "$home/talk"
 "$midair" --rehearse "$home/talk" --lose-card 90 >/dev/null 2>"$home/lost" &
 app=$!
 until_true 60 "a window that will lose its card" test -s "$home/talk/said.jsonl"
-echo 'Place(component: "solid/cube", side: Right)' >"$home/talk/asks.ron"
-until_true 60 "a lost graphics card opens the window anew" grep -q "opens anew" "$home/lost"
+printf '%s\n' 'Panel(id: "library", open: true)' 'Place(component: "solid/cube", side: Right)' >"$home/talk/asks.ron"
+until_true 120 "a lost graphics card opens the window anew" grep -q "opens anew" "$home/lost"
 stands() { tail -n 1 "$home/talk/said.jsonl" | grep -q '"objects":1.*"undo":1'; }
 until_true 60 "the work is there again, and can be undone" stands
 ! grep -q panicked "$home/lost" && [ "$(grep -c '^midair:' "$home/lost")" -eq 1 ] || fail "a lost card: $(cat "$home/lost")"
