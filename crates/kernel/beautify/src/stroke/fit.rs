@@ -225,7 +225,7 @@ impl Descent {
             // A magnitude that says nothing is not moved far.
             let least = 1e-6 * matrix.diagonal().max() + 1e-12;
             let mut gained = None;
-            for _ in 0..12 {
+            for _ in 0..8 {
                 let mut damped = matrix.clone();
                 for i in 0..trial.len() {
                     damped[(i, i)] += self.damping * (matrix[(i, i)] + least);
@@ -252,7 +252,7 @@ impl Descent {
                 }
                 self.damping *= 6.0;
             }
-            self.done = gained.is_none_or(|g| g < 1e-6);
+            self.done = gained.is_none_or(|g| g < 1e-4);
         }
     }
 
