@@ -212,12 +212,12 @@ fn task(name: &str) -> Result<Recipe, String> {
     ron::from_str(text).map_err(|e| e.to_string())
 }
 
-/// A dab of 16³ nodes in 128³: before, after.
+/// A dab of so many nodes in so many: before, after.
 #[cfg(test)]
-pub(crate) fn dab() -> (Program, Program) {
-    let step = 2.0 / 127.0;
+pub(crate) fn dab(nodes: u32, within: u32) -> (Program, Program) {
+    let step = 2.0 / (within - 1) as f32;
     let made = |dab| full(step, dab).expect("sound");
-    (made(None), made(Some(8.0 * step)))
+    (made(None), made(Some(0.5 * nodes as f32 * step)))
 }
 
 impl Work {

@@ -1,6 +1,6 @@
 //! What memory and time grow with.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::support::gpu;
@@ -38,32 +38,46 @@ fn memory_grows_with_the_surface() {
     assert!(exponent < 2.15, "{exponent}");
 }
 
-/// An edit of 32³ nodes in 256³ costs little beside the whole, though that is but five tori: bricks in the way of
-/// the edit are a tenth of theirs. (`measure` has the figure beside a field that fills its box.) On software the processor's own time is
-/// taken, which other work on the machine does not lengthen.
+/// An edit of 16³ nodes in 128³, which has the same share of a field that fills its box as 32³ in 256³, costs little
+/// beside the whole.
 #[test]
 fn a_dab_is_a_small_part_of_the_whole() {
     let Some(gpu) = gpu() else { return };
-    let (before, after) = dab();
-    let mut solid = GpuSolid::make(&gpu, &before).unwrap();
-    solid.update(&after).unwrap();
-    let (mut dab, mut whole) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..2 {
-        solid.make_again(&before).unwrap();
-        let started = spent(&gpu);
+    assert!(share(&gpu, 16, 128) <= 0.1);
+}
+
+/// The figure of the issue; takes half a minute of processor time on software.
+#[test]
+#[ignore = "long on software: cargo test -p midair-gpu --lib -- --ignored --test-threads 1 --nocapture"]
+fn a_dab_of_32_in_256() {
+    let Some(gpu) = gpu() else { return };
+    assert!(share(&gpu, 32, 256) <= 0.02);
+}
+
+/// An edit's part of the whole. On software the processor's own time is taken, which other work on the machine
+/// does not lengthen.
+fn share(gpu: &Arc<Gpu>, nodes: u32, within: u32) -> f64 {
+    let (before, after) = dab(nodes, within);
+    let mut solid = GpuSolid::make(gpu, &before).unwrap();
+    let (mut edit, mut whole) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..3 {
+        let started = spent(gpu);
         solid.update(&after).unwrap();
-        dab = dab.min(spent(&gpu) - started);
-        let started = spent(&gpu);
+        edit = edit.min(spent(gpu) - started);
+        solid.update(&before).unwrap();
+    }
+    for _ in 0..2 {
+        let started = spent(gpu);
         solid.make_again(&after).unwrap();
-        whole = whole.min(spent(&gpu) - started);
+        whole = whole.min(spent(gpu) - started);
     }
     println!(
         "{:.1} ms of {:.1} ms: {:.4}",
-        1e3 * dab,
+        1e3 * edit,
         1e3 * whole,
-        dab / whole
+        edit / whole
     );
-    assert!(dab <= 0.2 * whole, "{dab} {whole}");
+    edit / whole
 }
 
 /// Seconds that this process was at work, where the device is the processor; else seconds.
