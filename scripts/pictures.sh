@@ -82,7 +82,8 @@ picture() {
 
 if [ "$to" = docs/pictures ]; then
   for name in chair cup; do
-    "$midair" play "assets/sessions/$name.ron" --shot "$to/$name.png"
+    made "$name" "$name"
+    "$midair" play scripts/nobody.ron --open "$home/$name.midair" --shot "$to/$name.png"
     smaller "$to/$name.png"
   done
   for of in empty-Dusk library-Day operands-Day outline-Dusk export-Day tutorial-Dusk settings-Day brush-Dusk; do

@@ -101,7 +101,7 @@ impl ScaffoldPanel {
             " mm",
             asks,
         );
-        kit::row(ui, "Lines", |ui| {
+        kit::wide_row(ui, 40.0, "Lines", |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for (name, shown) in [
                 ("shown", LinesShown::Shown),

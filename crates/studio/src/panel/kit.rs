@@ -42,8 +42,8 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
 
 /// Points across the names at the left of [`row`]s, in a column or a board of the usual width.
 const NAMES: f32 = 112.0;
-/// Points across the number beside a slider.
-const NUMBER: f32 = 64.0;
+/// Points across the number beside a slider, with its unit: what is wider pushes a panel apart.
+const NUMBER: f32 = 92.0;
 
 /// One thing to set: its name at the left, what sets it at the right, below that of the row above. Sliders take what room
 /// there is.
@@ -61,8 +61,8 @@ pub fn wide_row<R>(ui: &mut Ui, across: f32, name: &str, show: impl FnOnce(&mut 
             ui.set_min_size(size);
             ui.add(Label::new(name).truncate());
         });
-        let room = ui.available_width() - NUMBER - 2.0 * UNIT;
-        ui.spacing_mut().slider_width = room.clamp(40.0, 240.0);
+        let room = ui.available_width() - NUMBER - UNIT;
+        ui.spacing_mut().slider_width = room.clamp(36.0, 240.0);
         show(ui)
     })
     .inner
