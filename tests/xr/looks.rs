@@ -15,7 +15,7 @@ use crate::perform::Performer;
 use crate::stage::{App, Runtime, midair};
 
 /// Pixels of an eye along an edge, as a multiple of what this runtime asks for: 320 x 240.
-const SHARPNESS: f32 = 3.0;
+const SHARPNESS: f32 = 2.5;
 
 /// Takes them all.
 pub fn looks(folder: &Path) -> Result<()> {

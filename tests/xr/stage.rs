@@ -20,6 +20,9 @@ pub const OUT: &str = "/out";
 /// work, or whose shaders are compiled first, may take long for a frame.
 const PATIENCE: Duration = Duration::from_secs(120);
 
+/// So many frames as well: where one takes seconds, more of them are waited for.
+const FRAMES: u64 = 300;
+
 /// Polls until something holds; says how many seconds it took.
 pub fn until(what: &str, mut holds: impl FnMut() -> Result<bool>) -> Result<f64> {
     let begin = Instant::now();
@@ -230,14 +233,30 @@ impl App {
 
     /// Waits until what it says fits.
     pub fn until(&mut self, what: &str, fits: impl Fn(&Value) -> bool) -> Result<f64> {
-        until(what, || {
+        let begin = Instant::now();
+        // Lines said before, how many it had said when it last said one, and when that was.
+        let first = self.all.len();
+        let (mut heard, mut last) = (first, begin);
+        loop {
             self.listen()?;
-            if let Some(status) = self.process.0.try_wait()? {
-                bail!("{what}: the app has ended ({status})");
+            if fits(&self.now) {
+                return Ok(begin.elapsed().as_secs_f64());
             }
-            Ok(fits(&self.now))
-        })
-        .with_context(|| format!("it said last: {}", self.now))
+            let ended = self.process.0.try_wait()?;
+            if self.all.len() > heard {
+                (heard, last) = (self.all.len(), Instant::now());
+            }
+            // Frames that come, however late, are waited for.
+            let late = begin.elapsed() > PATIENCE && (heard - first) as u64 > FRAMES;
+            if ended.is_some() || late || last.elapsed() > PATIENCE {
+                let why = ended.map_or_else(
+                    || format!("not within {} s", begin.elapsed().as_secs()),
+                    |status| format!("the app has ended ({status})"),
+                );
+                bail!("{what}: {why}; it said last: {}", self.now);
+            }
+            sleep(Duration::from_millis(5));
+        }
     }
 
     /// Asks for something as a panel would, and waits until it is asked.
