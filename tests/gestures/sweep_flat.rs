@@ -1,7 +1,7 @@
 //! Sweep by gamepad alone and by mouse and keys alone: a sheet, a tube, the tube written; recorded, and
 //! played back to the same bytes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bevy::input::gamepad::GamepadButton as Button;
 use bevy::input::keyboard::{Key, NativeKey};
