@@ -8,10 +8,12 @@
 //! Everything that can be missing or fail is a [`GpuError`], so that the caller can go on without a GPU.
 //!
 //! ```no_run
+//! use std::sync::Arc;
+//!
 //! use midair_field::{Placement, Primitive, Program};
 //! use midair_gpu::{Gpu, GpuOptions, GpuSolid};
 //!
-//! let gpu = Gpu::open(&GpuOptions::default())?;
+//! let gpu = Arc::new(Gpu::open(&GpuOptions::default())?);
 //! let ball = Primitive::Sphere { radius: 0.2 }.into();
 //! let program = Program::compile(&ball, &Placement::IDENTITY, 0.01, &())?;
 //! let solid = GpuSolid::make(&gpu, &program)?;
