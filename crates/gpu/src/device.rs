@@ -236,7 +236,11 @@ impl Gpu {
         self.check()?;
         match waited {
             Ok(_) => Ok(()),
-            Err(e) => Err(GpuError::Lost(e.to_string())),
+            Err(e) => {
+                // A queue whose work never ends panics when it is dropped: a card that hangs keeps both.
+                std::mem::forget((self.device.clone(), self.queue.clone()));
+                Err(GpuError::Lost(e.to_string()))
+            }
         }
     }
 }
