@@ -72,7 +72,7 @@ pub(crate) fn tell(
     labels.say(Label {
         key: LabelKey::Budget,
         // Over the panel on the wrist, which it would cover before it.
-        at: stance.hand(off).position + Vec3::new(0.16 * outwards, 0.17, 0.06),
+        at: stance.hand(off).position + Vec3::new(0.16 * outwards, 0.205, 0.06),
         text: format!("{mean:.1} ms of {BUDGET:.1} (most {worst:.1})   {rate:.0} Hz"),
         weight: late,
         ..Label::default()
