@@ -7,14 +7,13 @@ use bevy::prelude::*;
 use midair::{Stage, probe};
 use midair_brush::{BRUSH, canvas};
 use midair_mesh::check;
-use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
+use midair_playback::{PlayOptions, PlayerPlugin, Session, play};
 use midair_solid::Solid;
 use midair_studio::command::Command;
 use midair_studio::project::{Begin, Places, Project};
 use midair_studio::settings::Settings;
 
 use crate::desk::Desk;
-use crate::pad_session::saved;
 
 impl Desk {
     /// As the mode's button on the bar asks.
@@ -29,41 +28,11 @@ impl Desk {
     }
 }
 
-fn recorded(path: &Path, title: &str) -> Desk {
-    let recorder = RecorderPlugin::create(path, title).unwrap();
-    Desk::with(move |app| {
-        app.add_plugins(recorder);
-    })
-}
-
-/// The file that was saved has no fault, and the recording makes the same.
-fn plays_back(desk: Desk, recording: &Path, pieces: usize) {
-    assert_eq!(desk.warnings(), [] as [String; 0]);
-    let Desk { app, home, .. } = desk;
-    // The recording ends with the app.
-    drop(app);
-    let mesh = saved(home.path());
-    let report = check(&midair_mesh::read(&mesh).unwrap().mesh);
-    assert!(report.is_faultless(), "{:?}", report.faults());
-    assert_eq!(report.pieces, pieces);
-    let again = tempfile::tempdir().unwrap();
-    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
-    player.add_plugins(PlayerPlugin);
-    let options = PlayOptions {
-        probe,
-        ..PlayOptions::default()
-    };
-    let report = play(&mut player, Session::load(recording).unwrap(), options).unwrap();
-    assert_eq!(report.objects.len(), 1);
-    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
-    assert!(a == b, "the same bytes");
-}
-
 #[test]
 fn a_figure_by_mouse_alone_plays_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("figure.ron");
-    let mut desk = recorded(&recording, "A figure, by mouse");
+    let mut desk = Desk::recorded(&recording, "A figure, by mouse");
     desk.take_brush();
     let radius = |d: &Desk| d.world().resource::<Settings>().brush.radius;
     let before = radius(&desk);
@@ -86,7 +55,8 @@ fn a_figure_by_mouse_alone_plays_back_to_the_same_bytes() {
     desk.wait(2);
     desk.strike_one(KeyCode::KeyE);
     desk.settle();
-    plays_back(desk, &recording, 1);
+    let report = desk.plays_back(&recording, 1);
+    assert_eq!(report.pieces, 1);
 }
 
 #[test]
@@ -131,7 +101,7 @@ fn the_wheel_with_ctrl_sizes_the_brush_and_x_erases() {
 fn a_figure_by_gamepad_alone_plays_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("figure.ron");
-    let mut desk = recorded(&recording, "A figure, by gamepad");
+    let mut desk = Desk::recorded(&recording, "A figure, by gamepad");
     desk.plug();
     desk.take_brush();
     // A line from end to end, dragged.
@@ -152,7 +122,8 @@ fn a_figure_by_gamepad_alone_plays_back_to_the_same_bytes() {
     desk.point(Vec3::new(0.05, 0.26, 0.0));
     desk.tap(Button::Select);
     desk.settle();
-    plays_back(desk, &recording, 1);
+    let report = desk.plays_back(&recording, 1);
+    assert_eq!(report.pieces, 1);
 }
 
 /// 3DBrushVR Fig. 6, at the scale of its Fig. 4.

@@ -22,6 +22,7 @@ mod operands;
 mod oracle;
 mod pad_session;
 mod preview;
+mod recorded;
 mod references;
 mod room;
 mod scaffold;

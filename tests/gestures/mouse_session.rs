@@ -2,16 +2,12 @@
 
 use bevy::input::keyboard::{Key, NativeKey};
 use bevy::prelude::*;
-use midair::{Stage, probe};
 use midair_document::ObjectId;
-use midair_mesh::check;
-use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
 use midair_studio::hands::Side;
-use midair_studio::project::{Begin, Places, Project};
+use midair_studio::project::Project;
 use midair_studio::snap::own_box;
 
 use crate::desk::Desk;
-use crate::pad_session::saved;
 
 const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
 
@@ -102,10 +98,7 @@ impl Desk {
 fn a_chair_by_mouse_and_keyboard_alone_plays_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("chair.ron");
-    let recorder = RecorderPlugin::create(&recording, "A chair, by mouse and keyboard").unwrap();
-    let mut desk = Desk::with(move |app| {
-        app.add_plugins(recorder);
-    });
+    let mut desk = Desk::recorded(&recording, "A chair, by mouse and keyboard");
     // Things go along the ground.
     desk.strike_one(KeyCode::KeyP);
     let feet = [(-0.12, -0.12), (0.12, -0.12), (-0.12, 0.12), (0.12, 0.12)];
@@ -132,29 +125,5 @@ fn a_chair_by_mouse_and_keyboard_alone_plays_back_to_the_same_bytes() {
     desk.glide(seat);
     desk.strike(&[(KeyCode::KeyE, PLAIN)]);
     desk.settle();
-    assert_eq!(desk.warnings(), [] as [String; 0]);
-    println!(
-        "a chair by mouse and keyboard: {} presses and drags, {:.0} s",
-        desk.presses,
-        desk.seconds()
-    );
-    let Desk { app, home, .. } = desk;
-    // The recording ends with the app.
-    drop(app);
-    let mesh = saved(home.path());
-    let read = midair_mesh::read(&mesh).unwrap().mesh;
-    let report = check(&read);
-    assert!(report.is_faultless(), "{:?}", report.faults());
-
-    let again = tempfile::tempdir().unwrap();
-    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
-    player.add_plugins(PlayerPlugin);
-    let options = PlayOptions {
-        probe,
-        ..PlayOptions::default()
-    };
-    let report = play(&mut player, Session::load(&recording).unwrap(), options).unwrap();
-    assert_eq!(report.objects.len(), 1);
-    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
-    assert!(a == b, "the same bytes");
+    desk.plays_back(&recording, 1);
 }

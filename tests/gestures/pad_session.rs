@@ -1,14 +1,8 @@
 //! A whole piece of work by gamepad alone, recorded and played back.
 
-use std::path::{Path, PathBuf};
-
 use bevy::input::gamepad::GamepadButton as Button;
 use bevy::math::Vec3;
-use midair::{Stage, probe};
 use midair_document::ObjectId;
-use midair_mesh::check;
-use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
-use midair_studio::project::{Begin, Places};
 
 use crate::desk::Desk;
 
@@ -34,25 +28,11 @@ impl Desk {
     }
 }
 
-/// The mesh that the button for saving wrote.
-pub fn saved(home: &Path) -> PathBuf {
-    let work = Places::below(home).work;
-    let files = std::fs::read_dir(&work).unwrap().map(|e| e.unwrap().path());
-    let mut meshes: Vec<_> = files
-        .filter(|p| p.extension().is_some_and(|e| e == "stl"))
-        .collect();
-    assert_eq!(meshes.len(), 1, "{meshes:?}");
-    meshes.remove(0)
-}
-
 #[test]
 fn a_chair_by_gamepad_alone_plays_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("chair.ron");
-    let recorder = RecorderPlugin::create(&recording, "A chair, by gamepad").unwrap();
-    let mut desk = Desk::with(move |app| {
-        app.add_plugins(recorder);
-    });
+    let mut desk = Desk::recorded(&recording, "A chair, by gamepad");
     desk.plug();
     let seat = desk.put("Cushion", Vec3::new(0.0, 0.42, 0.0));
     let feet = [(-0.12, 0.12), (0.12, 0.12), (0.12, -0.12), (-0.12, -0.12)];
@@ -74,29 +54,5 @@ fn a_chair_by_gamepad_alone_plays_back_to_the_same_bytes() {
     desk.point(Vec3::new(0.0, 0.46, 0.05));
     desk.tap(Button::Select);
     desk.settle();
-    assert_eq!(desk.warnings(), [] as [String; 0]);
-    println!(
-        "a chair by gamepad: {} presses and pushes, {:.0} s",
-        desk.presses,
-        desk.seconds()
-    );
-    let Desk { app, home, .. } = desk;
-    // The recording ends with the app.
-    drop(app);
-    let mesh = saved(home.path());
-    let read = midair_mesh::read(&mesh).unwrap().mesh;
-    let report = check(&read);
-    assert!(report.is_faultless(), "{:?}", report.faults());
-
-    let again = tempfile::tempdir().unwrap();
-    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
-    player.add_plugins(PlayerPlugin);
-    let options = PlayOptions {
-        probe,
-        ..PlayOptions::default()
-    };
-    let report = play(&mut player, Session::load(&recording).unwrap(), options).unwrap();
-    assert_eq!(report.objects.len(), 1);
-    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
-    assert!(a == b, "the same bytes");
+    desk.plays_back(&recording, 1);
 }

@@ -6,17 +6,12 @@ use std::path::Path;
 use bevy::input::gamepad::GamepadButton as Button;
 use bevy::math::DVec3;
 use bevy::prelude::*;
-use midair::{Stage, probe};
 use midair_document::{ConstructionLine, DrawnStroke};
-use midair_mesh::check;
-use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
 use midair_scaffold::{Draft, SCAFFOLD};
 use midair_studio::command::Command;
 use midair_studio::hands::Side;
-use midair_studio::project::{Begin, Places};
 
 use crate::desk::Desk;
-use crate::pad_session::saved;
 
 impl Desk {
     fn all_lines(&self) -> Vec<ConstructionLine> {
@@ -45,10 +40,7 @@ impl Desk {
 }
 
 fn recorded(path: &Path, title: &str) -> Desk {
-    let recorder = RecorderPlugin::create(path, title).unwrap();
-    let mut desk = Desk::with(move |app| {
-        app.add_plugins(recorder);
-    });
+    let mut desk = Desk::recorded(path, title);
     // As the mode's button on the bar asks.
     desk.app.world_mut().write_message(Command::Mode(SCAFFOLD));
     desk.wait(3);
@@ -163,33 +155,6 @@ fn is_fair_loop(desk: &Desk, lines: &[ConstructionLine]) {
     }
 }
 
-/// The file that was saved has no fault, and the recording makes the same.
-fn plays_back(desk: Desk, recording: &Path) {
-    assert_eq!(desk.warnings(), [] as [String; 0]);
-    println!(
-        "{} presses and pushes, {:.0} s",
-        desk.presses,
-        desk.seconds()
-    );
-    let Desk { app, home, .. } = desk;
-    // The recording ends with the app.
-    drop(app);
-    let mesh = saved(home.path());
-    let report = check(&midair_mesh::read(&mesh).unwrap().mesh);
-    assert!(report.is_faultless(), "{:?}", report.faults());
-    let again = tempfile::tempdir().unwrap();
-    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
-    player.add_plugins(PlayerPlugin);
-    let options = PlayOptions {
-        probe,
-        ..PlayOptions::default()
-    };
-    let report = play(&mut player, Session::load(recording).unwrap(), options).unwrap();
-    assert_eq!(report.objects.len(), 14);
-    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
-    assert!(a == b, "the same bytes");
-}
-
 #[test]
 fn a_box_with_a_loop_by_mouse_alone_plays_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -256,7 +221,7 @@ fn a_box_with_a_loop_by_mouse_alone_plays_back_to_the_same_bytes() {
     desk.wait(2);
     desk.strike_one(KeyCode::KeyE);
     desk.settle();
-    plays_back(desk, &recording);
+    desk.plays_back(&recording, 14);
 }
 
 #[test]
@@ -302,5 +267,5 @@ fn a_box_with_a_loop_by_gamepad_alone_plays_back_to_the_same_bytes() {
     assert_eq!(side, Side::Right);
     desk.tap(Button::Select);
     desk.settle();
-    plays_back(desk, &recording);
+    desk.plays_back(&recording, 14);
 }

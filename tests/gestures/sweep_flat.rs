@@ -1,31 +1,17 @@
 //! Sweep by gamepad alone and by mouse and keys alone: a sheet, a tube, the tube written; recorded, and
 //! played back to the same bytes.
 
-use std::path::Path;
-
 use bevy::input::gamepad::GamepadButton as Button;
 use bevy::input::keyboard::{Key, NativeKey};
 use bevy::prelude::*;
-use midair::{Stage, probe};
 use midair_document::{Kind, ObjectId};
-use midair_mesh::check;
-use midair_playback::{PlayOptions, PlayerPlugin, RecorderPlugin, Session, play};
 use midair_studio::hands::Side;
-use midair_studio::project::{Begin, Places};
 use midair_studio::tools::Tools;
 use midair_sweep::{Draft, Solo};
 
 use crate::desk::Desk;
-use crate::pad_session::saved;
 
 const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
-
-fn recorded(path: &Path, title: &str) -> Desk {
-    let recorder = RecorderPlugin::create(path, title).unwrap();
-    Desk::with(move |app| {
-        app.add_plugins(recorder);
-    })
-}
 
 impl Desk {
     fn sweeps(&self) -> bool {
@@ -67,33 +53,11 @@ impl Desk {
     }
 }
 
-/// What was written is a solid without fault, and the recording ends in the same bytes.
-fn plays_back(desk: Desk, recording: &Path) {
-    assert_eq!(desk.warnings(), [] as [String; 0]);
-    let Desk { app, home, .. } = desk;
-    // The recording ends with the app.
-    drop(app);
-    let mesh = saved(home.path());
-    let report = check(&midair_mesh::read(&mesh).unwrap().mesh);
-    assert!(report.is_faultless(), "{:?}", report.faults());
-    let again = tempfile::tempdir().unwrap();
-    let mut player = midair::app(Stage::Bare, Places::below(again.path()), Begin::default());
-    player.add_plugins(PlayerPlugin);
-    let options = PlayOptions {
-        probe,
-        ..PlayOptions::default()
-    };
-    let report = play(&mut player, Session::load(recording).unwrap(), options).unwrap();
-    assert_eq!(report.objects.len(), 2);
-    let [a, b] = [mesh, saved(again.path())].map(|p| std::fs::read(p).unwrap());
-    assert!(a == b, "the same bytes");
-}
-
 #[test]
 fn a_sheet_and_a_tube_by_gamepad_alone_play_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("swept.ron");
-    let mut desk = recorded(&recording, "A sheet and a tube, by gamepad");
+    let mut desk = Desk::recorded(&recording, "A sheet and a tube, by gamepad");
     desk.plug();
     // Out of the ring: of four modes the third is below.
     desk.down(Button::Start);
@@ -168,7 +132,7 @@ fn a_sheet_and_a_tube_by_gamepad_alone_play_back_to_the_same_bytes() {
         desk.presses,
         desk.seconds()
     );
-    plays_back(desk, &recording);
+    desk.plays_back(&recording, 2);
 }
 
 /// The ends are clicked and their tangents pulled, upwards or downwards by so many pixels.
@@ -212,7 +176,7 @@ fn ways(desk: &mut Desk, left: Vec2, right: Vec2) -> ObjectId {
 fn a_sheet_and_a_tube_by_mouse_alone_play_back_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("swept.ron");
-    let mut desk = recorded(&recording, "A sheet and a tube, by mouse");
+    let mut desk = Desk::recorded(&recording, "A sheet and a tube, by mouse");
     desk.glide(Vec2::new(640.0, 300.0));
     desk.strike(&[(KeyCode::Digit3, PLAIN)]);
     assert!(desk.sweeps());
@@ -255,7 +219,7 @@ fn a_sheet_and_a_tube_by_mouse_alone_play_back_to_the_same_bytes() {
         desk.presses,
         desk.seconds()
     );
-    plays_back(desk, &recording);
+    desk.plays_back(&recording, 2);
 }
 
 /// What the window's main schedule does, drawing left out.

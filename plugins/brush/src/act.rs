@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_studio::{
-    hands::{Action, Cross, Hand, Hands, Haptic, Side},
+    hands::{Action, COUNTED, Cross, Hand, Hands, Haptic, Side},
     hold::{Held, Reserved},
     pick::Touch,
     settings::BrushSkeleton,
@@ -112,7 +112,8 @@ pub(crate) fn paint(
     mut draft: ResMut<Draft>,
     mut studio: Studio,
 ) {
-    draft.bypass_change_detection().age += time.delta_secs();
+    // While the app itself stands still, a press grows no older.
+    draft.bypass_change_detection().age += time.delta_secs().min(COUNTED);
     // The leading hand first: where both triggers go down in one frame it is the one that paints.
     let main = studio.settings.hands.main();
     for side in [main, main.other()] {
