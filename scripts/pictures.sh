@@ -25,7 +25,7 @@ made() {
   [ -e "$home/$2.midair" ] || "$midair" play "assets/sessions/$1.ron" --save "$home/$2.midair"
 }
 
-Xvfb -displayfd 3 -screen 0 "${size}x24" 3>"$home/display" >/dev/null 2>&1 &
+Xvfb -noreset -displayfd 3 -screen 0 "${size}x24" 3>"$home/display" >/dev/null 2>&1 &
 xvfb=$!
 until [ -s "$home/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$home/display")

@@ -46,7 +46,7 @@ env -u DISPLAY -u WAYLAND_DISPLAY "$midair" 2>"$home/none" || status=$?
 pass "a missing display is one line and status 1"
 
 # A free display of its own.
-Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$home/display" >/dev/null 2>&1 &
+Xvfb -noreset -displayfd 3 -screen 0 1280x720x24 3>"$home/display" >/dev/null 2>&1 &
 xvfb=$!
 until_true 20 "a virtual display" test -s "$home/display"
 DISPLAY=:$(cat "$home/display")
