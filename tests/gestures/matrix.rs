@@ -119,8 +119,8 @@ impl Studio {
         self.reach(R, AWAY);
     }
 
-    /// Taken in hand where it is, let go over a mode, and the button let go after it.
-    fn carried(&mut self, id: ObjectId, at: Vec3, to: ToolId) {
+    /// Taken in hand where it is.
+    fn take(&mut self, id: ObjectId, at: Vec3) {
         self.reach(R, at);
         assert_eq!(
             self.touched(R),
@@ -129,6 +129,11 @@ impl Studio {
             self.object(id).name
         );
         self.press(R, Action::Grab);
+    }
+
+    /// Taken in hand where it is, let go over a mode, and the button let go after it.
+    fn carried(&mut self, id: ObjectId, at: Vec3, to: ToolId) {
+        self.take(id, at);
         assert_eq!(self.held().get(R), Some(id));
         let objects = Vec::new();
         self.ask(Command::Carry { objects, to });
@@ -140,14 +145,7 @@ impl Studio {
 
     /// Taken in hand and put down elsewhere.
     fn shifted(&mut self, id: ObjectId, at: Vec3, by: Vec3) {
-        self.reach(R, at);
-        assert_eq!(
-            self.touched(R),
-            Some(id),
-            "{} at {at}",
-            self.object(id).name
-        );
-        self.press(R, Action::Grab);
+        self.take(id, at);
         self.carry_right(at + by);
         self.let_go(R, Action::Grab);
         self.frames(2);

@@ -82,6 +82,17 @@ fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
+/// Frames until a file is there that is written off the frame.
+fn written(s: &mut Studio, file: &std::path::Path) {
+    for _ in 0..200 {
+        if file.exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        s.frame();
+    }
+}
+
 /// A square of 0.4 m in the plane z = 0, every end off by a centimetre.
 fn square(s: &mut Studio) {
     let c = [
@@ -334,25 +345,13 @@ fn a_drawing_is_saved_opened_and_exported_as_it_is() {
     assert_eq!(text.lines().filter(|l| l.starts_with("l ")).count(), 5);
     s.asked(Ask::Sheet(Some(home.join("sheet.svg"))));
     s.settle();
-    for _ in 0..200 {
-        if home.join("sheet.svg").exists() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        s.frame();
-    }
+    written(&mut s, &home.join("sheet.svg"));
     let sheet = std::fs::read_to_string(home.join("sheet.svg")).unwrap();
     // Four lines and a stroke in each of four views.
     assert_eq!(sheet.matches("<path").count(), 20);
     s.asked(Ask::History(Some(home.join("history.json"))));
     s.settle();
-    for _ in 0..200 {
-        if home.join("history.json").exists() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        s.frame();
-    }
+    written(&mut s, &home.join("history.json"));
     let told = std::fs::read_to_string(home.join("history.json")).unwrap();
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
     let steps = told["steps"].as_array().unwrap();
