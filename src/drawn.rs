@@ -1,7 +1,7 @@
 //! What drawing costs beside the main schedule: how long extraction takes, and the render world's own
 //! processor time.
 //!
-//! Every frame is drawn into a small image, so that a software renderer has little to do; what the render world
+//! Every frame is drawn into a small image, with a small map of shadows, so that a software renderer has little to do; what the render world
 //! itself does for a frame (extraction, batching, uploads, encoding) does not depend on the number of
 //! pixels. Its schedules run on one thread here, so that the processor time of that thread is all of it: the
 //! driver's own threads are not in it.
@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use bevy::camera::RenderTarget;
 use bevy::ecs::schedule::{ScheduleLabel, Schedules, SingleThreadedExecutor};
+use bevy::light::DirectionalLightShadowMap;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::{ExtractSchedule, Render, RenderApp, RenderScheduleOrder};
@@ -18,7 +19,7 @@ use midair_playback::{DrawnReport, FrameTimes};
 use midair_studio::show::{Eye, camera};
 
 /// Pixels of what is drawn.
-const SIZE: [u32; 2] = [320, 180];
+const SIZE: [u32; 2] = [64, 36];
 /// The first frames compile shaders and are not counted.
 const WARM: usize = 90;
 
@@ -64,6 +65,9 @@ struct Ends;
 #[derive(Resource)]
 struct Began(Instant, Option<f64>);
 
+/// Pixels across the map of shadows.
+const SHADOWS: usize = 128;
+
 /// Draws every frame from here on and measures it; to be called before the app is made ready.
 pub(crate) fn draw_every_frame(app: &mut App) -> Costs {
     let costs = Costs::default();
@@ -73,6 +77,7 @@ pub(crate) fn draw_every_frame(app: &mut App) -> Costs {
         let image = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         images.add(image)
     };
+    app.insert_resource(DirectionalLightShadowMap { size: SHADOWS });
     let from = Transform::from_xyz(1.1, 1.2, 1.9).looking_at(Vec3::new(0.0, 0.3, 0.0), Vec3::Y);
     app.world_mut()
         .spawn((camera(Eye::Working), RenderTarget::from(target), from));

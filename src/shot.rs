@@ -1,14 +1,17 @@
 //! Pictures of the work.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use bevy::camera::{ClearColorConfig, RenderTarget, Viewport};
 use bevy::prelude::*;
-use bevy::render::render_resource::TextureFormat;
+use bevy::render::render_resource::{PipelineCache, TextureFormat};
 use bevy::render::renderer::RenderDevice;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::render::{Render, RenderApp, RenderSystems};
 use midair_csg::Preview;
 use midair_space::Stance;
 use midair_space::room::Root;
@@ -24,6 +27,28 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// A picture that has come back.
 #[derive(Resource, Default)]
 struct Taken(Option<Image>);
+
+/// How many pipelines are still made: what needs one of them is not seen until then.
+#[derive(Clone, Default)]
+struct Making(Arc<AtomicUsize>);
+
+impl Making {
+    fn watch(app: &mut App) -> Self {
+        let making = Self::default();
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            let count = making.0.clone();
+            let note = move |cache: Res<PipelineCache>| {
+                count.store(cache.waiting_pipelines().count(), Ordering::Relaxed);
+            };
+            render.add_systems(Render, note.in_set(RenderSystems::Cleanup));
+        }
+        making
+    }
+
+    fn any(&self) -> bool {
+        self.0.load(Ordering::Relaxed) > 0
+    }
+}
 
 /// Who looks at what is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,10 +108,11 @@ pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()>
     }
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
     app.insert_resource(Delivery::AsTheyCome);
+    let making = Making::watch(app);
     let began = Instant::now();
     let mut frames = 0;
-    while frames < 8 || (app.world().resource::<Preview>().is_busy() && began.elapsed() < PATIENCE)
-    {
+    let is_busy = |app: &App| making.any() || app.world().resource::<Preview>().is_busy();
+    while frames < 8 || (is_busy(app) && began.elapsed() < PATIENCE) {
         app.update();
         frames += 1;
     }
@@ -199,6 +225,8 @@ fn frame_all(world: &World) -> Transform {
 
 /// Frames between two things that are asked for: panels take their places.
 const BEAT: u32 = 4;
+/// Frames at rest before the room is drawn.
+const LOOKED: u32 = 12;
 
 /// In a window: asks for `asks`, saves a picture once everything is made and drawn, and ends the app.
 pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, asks: Vec<Command>) {
@@ -212,6 +240,8 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
         }
     }
     let mut asks = asks.into_iter();
+    let making = Making::watch(app);
+    let began = Instant::now();
     let mut frame = 0;
     let mut settled = 0;
     app.insert_resource(Unhurried);
@@ -247,18 +277,20 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
                 && !thumbnails.is_busy()
                 && !preview.is_busy()
             {
-                settled + 1
+                // What the room needs is made once the room is drawn.
+                let waits = settled == LOOKED + 4 && making.any() && began.elapsed() < PATIENCE;
+                settled + u32::from(!waits)
             } else {
                 0
             };
             // The room is drawn for the last frames alone: nobody sees the others.
-            let drawn = settled >= 12;
+            let drawn = settled >= LOOKED;
             for mut camera in &mut cameras {
                 if camera.is_active != drawn {
                     camera.is_active = drawn;
                 }
             }
-            if settled == 20 {
+            if settled == LOOKED + 8 {
                 commands.spawn(Screenshot::primary_window()).observe(
                     |shot: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| {
                         taken.0 = Some(shot.image.clone());

@@ -228,7 +228,7 @@ fn draw(
         map.end("hints", false);
     }
     for (dock, side) in [
-        (Dock::Left, egui::Panel::left("left").default_size(272.0)),
+        (Dock::Left, egui::Panel::left("left").default_size(288.0)),
         (Dock::Right, egui::Panel::right("right").default_size(288.0)),
     ] {
         let open = open_in(panels, dock);
@@ -330,11 +330,12 @@ fn column(
     map: &mut Map,
     asks: &mut Vec<Command>,
 ) {
-    let share = root.available_height() / open.len() as f32 - 48.0;
     side.resizable(true)
         .size_range(200.0..=480.0)
         .show(root, |ui| {
             map.begin();
+            // Each gets the same height, its heading and the line above it with it.
+            let (top, share) = (ui.cursor().top(), ui.available_height() / open.len() as f32);
             for (i, info) in open.iter().enumerate() {
                 if i > 0 {
                     ui.separator();
@@ -343,7 +344,10 @@ fn column(
                 ui.add_space(8.0);
                 heading(ui, info, asks);
                 ui.push_id(info.id, |ui| {
-                    ui.set_max_height(share.max(80.0));
+                    let bottom = top + (i + 1) as f32 * share;
+                    ui.set_max_height(
+                        (bottom - ui.cursor().top() - ui.spacing().item_spacing.y).max(80.0),
+                    );
                     fill(ui, info, world, panels, asks);
                 });
                 map.end(info.id, true);

@@ -43,12 +43,12 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
 /// Points across the names at the left of [`row`]s, in a column or a board of the usual width.
 const NAMES: f32 = 112.0;
 /// Points across the number beside a slider, with its unit: what is wider pushes a panel apart.
-const NUMBER: f32 = 92.0;
+const NUMBER: f32 = 84.0;
 
 /// One thing to set: its name at the left, what sets it at the right, below that of the row above. Sliders take what room
 /// there is.
 pub fn row<R>(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui) -> R) -> R {
-    wide_row(ui, NAMES, name, show)
+    wide_row(ui, NAMES.min(0.38 * ui.available_width()), name, show)
 }
 
 /// The same with names of so many points across, where they are longer.
