@@ -8,6 +8,7 @@ use midair_studio::{
     command::Command,
     document::{Object, ObjectId},
     evaluate::Evaluations,
+    hands::Hands,
     materials::MaterialShelf,
     panel::{
         MaterialRows, Panel, choose, egui,
@@ -58,7 +59,8 @@ impl Panel for BrushPanel {
             .auto_shrink([false, true])
             .show(ui, |ui| {
                 skeletons(ui, &brush, asks);
-                sizes(ui, &brush, settings, asks);
+                let scale = world.resource::<Hands>().metres_per_world;
+                sizes(ui, &brush, settings, scale, asks);
                 if brush.skeleton == BrushSkeleton::Volume {
                     self.shelf(ui, world, &brush, asks);
                 }
@@ -101,7 +103,15 @@ fn skeletons(ui: &mut Ui, brush: &BrushSettings, asks: &mut Vec<Command>) {
     });
 }
 
-fn sizes(ui: &mut Ui, brush: &BrushSettings, settings: &Settings, asks: &mut Vec<Command>) {
+/// `scale`: metres of the room a metre of the work is shown as. A brush keeps its size in the hand; what is told is
+/// its size in the work.
+fn sizes(
+    ui: &mut Ui,
+    brush: &BrushSettings,
+    settings: &Settings,
+    scale: f32,
+    asks: &mut Vec<Command>,
+) {
     let unit = settings.units.length;
     let (key, mut value, (least, most), what) = match brush.skeleton {
         BrushSkeleton::Volume => ("brush.size", brush.size, BrushSettings::SIZES, "Size"),
@@ -109,7 +119,8 @@ fn sizes(ui: &mut Ui, brush: &BrushSettings, settings: &Settings, asks: &mut Vec
     };
     let slider = Slider::new(&mut value, least..=most)
         .logarithmic(true)
-        .custom_formatter(move |v, _| units::length(v as f32, unit));
+        .custom_formatter(move |v, _| units::length(v as f32 / scale, unit))
+        .custom_parser(move |text| Some(f64::from(units::metres(text, unit)? * scale)));
     if field(ui, what, slider).changed() {
         asks.push(Settings::command(key, value));
     }
