@@ -7,6 +7,7 @@ mod drawn;
 mod rehearse;
 mod report;
 mod shot;
+mod threads;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -186,6 +187,7 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
     if worn {
         app.add_plugins(HeadsetPlugin);
     }
+    app.add_plugins(threads::OneThreadPlugin);
     app
 }
 

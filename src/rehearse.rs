@@ -20,9 +20,11 @@ use midair_space::{Boards, Wands};
 use midair_studio::StudioSet;
 use midair_studio::command::Command;
 use midair_studio::hands::{ActionSet, Hands, HandsInput, Side, WriteHands};
+use midair_studio::help::Tutorial;
 use midair_studio::notice::Notices;
 use midair_studio::panel::Panels;
 use midair_studio::project::{Project, Selection};
+use midair_studio::settings::{Lesson, Settings};
 use midair_studio::show::Drafts;
 use midair_studio::tools::Tools;
 use midair_studio::world::WorldView;
@@ -94,6 +96,8 @@ struct Standing<'a> {
     busy: usize,
     asked: usize,
     panels: Vec<&'a str>,
+    /// The step of the tutorial that is shown; empty where none is.
+    lesson: &'a str,
     warnings: &'a [String],
     info: Vec<&'a str>,
     hands: [HandSaid; 2],
@@ -139,7 +143,7 @@ fn count(life: Option<Res<Life>>, mut parts: ResMut<Parts>) {
 
 /// Where the frames' time went.
 fn figures(parts: &Parts, file: &Path) {
-    if let Ok(text) = serde_json::to_string_pretty(&parts.figures()) {
+    if let Ok(text) = serde_json::to_string_pretty(&(parts.figures(), parts.systems())) {
         let _ = std::fs::write(file, text);
     }
 }
@@ -246,6 +250,16 @@ fn side_by_side(left: &Image, right: &Image, file: &Path) -> anyhow::Result<()> 
     Ok(both.save(file)?)
 }
 
+/// Where the tutorial is.
+fn lesson(world: &World) -> &str {
+    let progress = world.resource::<Settings>().help.tutorial;
+    let tutorial = world.get_resource::<Tutorial>();
+    tutorial
+        .filter(|_| progress.state == Lesson::Going)
+        .and_then(|t| t.name(progress.step))
+        .unwrap_or_default()
+}
+
 fn tell(world: &mut World) {
     let busy = world.resource_scope(|world, work: Mut<Arrivals>| {
         work.0.unfinished(world) + work.0.waiting(world)
@@ -296,6 +310,7 @@ fn tell(world: &mut World) {
             .filter(|p| panels.is_open(p.id))
             .map(|p| p.id)
             .collect(),
+        lesson: lesson(world),
         warnings: notices.warnings(),
         info: notices.recent(1e9).map(|n| n.text.as_str()).collect(),
         hands: [hand(Side::Left), hand(Side::Right)],

@@ -92,7 +92,7 @@ fn table(
     let took = begin.elapsed().as_secs_f64();
     app.say(&format!("parts {shown}"))?;
     // The whole frame, then its parts by name.
-    let (main, parts): (Value, BTreeMap<String, Value>) =
+    let ((main, parts), systems): ((Value, BTreeMap<String, Value>), Vec<Value>) =
         serde_json::from_str(&fs::read_to_string(&path).context("parts.json")?)?;
     let figure = |part: &Value, name: &str| part[name].as_f64().unwrap_or(f64::NAN);
     let whole: f64 = parts.values().map(|p| figure(p, "median")).sum();
@@ -116,6 +116,23 @@ fn table(
         figure(&main, "median"),
         figure(&main, "p99")
     );
+    for system in systems.iter().take(40) {
+        println!(
+            "     {:>8.1} us a frame, {:>5.2} runs, {} {}",
+            1e3 * figure(system, "total_ms") / figure(&main, "count"),
+            figure(system, "runs") / figure(&main, "count"),
+            system["schedule"].as_str().unwrap_or_default(),
+            system["name"].as_str().unwrap_or_default(),
+        );
+    }
+    if !systems.is_empty() {
+        let all: f64 = systems.iter().map(|s| figure(s, "total_ms")).sum();
+        println!(
+            "     {:.2} ms a frame in {} systems",
+            all / figure(&main, "count"),
+            systems.len()
+        );
+    }
     let after = laid(&app.now);
     let (times, ms) = (after.0 - before.0, after.1 - before.1);
     println!(

@@ -13,6 +13,7 @@ mod profiles;
 mod room;
 mod scenario;
 mod stage;
+mod taught;
 mod wire;
 
 use std::path::Path;
@@ -29,7 +30,7 @@ struct Scenario {
 
 /// Those that are no session.
 fn own() -> impl Iterator<Item = Scenario> {
-    let all: [(&str, fn(&Path) -> Result<()>); 14] = [
+    let all: [(&str, fn(&Path) -> Result<()>); 15] = [
         ("absent", life::absent),
         ("from-flat", life::from_flat),
         ("tracking", life::tracking),
@@ -37,6 +38,7 @@ fn own() -> impl Iterator<Item = Scenario> {
         ("attention", life::attention),
         ("killed", life::killed),
         ("room", room::room),
+        ("taught", taught::taught),
         ("looks", looks::looks),
         ("index", profiles::index),
         ("touch", profiles::touch),

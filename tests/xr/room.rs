@@ -22,7 +22,7 @@ pub const LIBRARY: &str = "Panel(\"library\")";
 const SETTINGS: &str = "Panel(\"settings\")";
 const EXPORT: &str = "Panel(\"export\")";
 const RING: &str = "Ring";
-const TUTORIAL: &str = "Panel(\"tutorial\")";
+pub const TUTORIAL: &str = "Panel(\"tutorial\")";
 
 /// A person's right hand, with a wand in it.
 pub struct Wand {

@@ -49,5 +49,6 @@ exec timeout -k 5 "$limit" unshare "${own[@]}" --mount --pid --net --ipc --fork 
   exec chroot "$root" /usr/bin/env -i PATH=/usr/local/bin:/usr/bin:/bin HOME=/tmp/home LANG=C.UTF-8 \
     XDG_RUNTIME_DIR=/run/xr XDG_CONFIG_HOME=/tmp/cfg VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.json \
     XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json MESA_SHADER_CACHE_DIR=/out/shaders \
+    ${MIDAIR_TIME_SYSTEMS:+MIDAIR_TIME_SYSTEMS=1} \
     /target/debug/examples/xr "$@"
 ' xr "$@"

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use midair_studio::{
     hands::Action,
     help::{KeyLine, Keys, Way},
+    panel::Host,
 };
 
 use crate::bindings::{Bindings, Control, Controls, Device};
@@ -12,9 +13,15 @@ use crate::keys::key_name;
 pub(crate) fn tell(
     bindings: Res<Bindings>,
     controls: Res<Controls>,
+    host: Res<Host>,
     mut keys: ResMut<Keys>,
     mut told: Local<Option<Device>>,
 ) {
+    // Who wears a headset sees no keyboard: its controllers are spoken of.
+    if *host == Host::Room {
+        *told = None;
+        return;
+    }
     let device = controls.device();
     if *told == Some(device) && !bindings.is_changed() {
         return;

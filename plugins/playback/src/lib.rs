@@ -25,6 +25,7 @@ mod run;
 mod session;
 mod sink;
 mod step;
+mod systems;
 mod turn;
 
 pub use arrivals::{Arrivals, OffFrame};
@@ -33,7 +34,7 @@ pub use expect::Expectation;
 pub use frames::{Frame, FrameRun, FrameRunBuilder, FrameRunFault};
 pub use hands_only::{HandsOnlyFault, MAX_SPEED, SpeedGate, check_hands_only};
 pub use parse::SessionError;
-pub use parts::{Counted, Parts, PartsPlugin};
+pub use parts::{Counted, Parts, PartsPlugin, TIME_SYSTEMS};
 pub use player::{Next, Player, PlayerPlugin, prepare};
 pub use record::{Recorder, RecorderPlugin};
 pub use recording::{RecordError, Recording};
@@ -45,4 +46,5 @@ pub use session::{
     DEFAULT_DT, FORMAT, MAX_BYTES, MAX_FRAMES, MAX_SECONDS, Place, Session, StartHands,
 };
 pub use step::{Goal, Step};
+pub use systems::SystemReport;
 pub use turn::Turn;

@@ -6,7 +6,8 @@ use std::time::Instant;
 use bevy::prelude::*;
 use midair_studio::StudioSet;
 
-use crate::FrameTimes;
+use crate::systems::{self, Systems};
+use crate::{FrameTimes, SystemReport};
 
 /// The parts of a frame, in order, as the report names them.
 const NAMES: [&str; 9] = [
@@ -29,6 +30,7 @@ pub struct Parts {
     counts: bool,
     main: Vec<f32>,
     ms: [Vec<f32>; NAMES.len()],
+    systems: Systems,
 }
 
 impl Parts {
@@ -41,6 +43,12 @@ impl Parts {
     pub fn restart(&mut self) {
         self.main.clear();
         self.ms.iter_mut().for_each(Vec::clear);
+        self.systems.restart();
+    }
+
+    /// Every system that ran, the costliest first; empty unless [`TIME_SYSTEMS`] is set.
+    pub fn systems(&self) -> Vec<SystemReport> {
+        self.systems.figures()
     }
 
     /// The whole main schedule, and its parts by name.
@@ -66,6 +74,9 @@ impl Parts {
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Counted;
 
+/// The variable of the environment that has each system timed as well.
+pub const TIME_SYSTEMS: &str = "MIDAIR_TIME_SYSTEMS";
+
 /// Marks between the parts of a frame. Left out unless asked for: each is a point at which the frame's systems meet.
 pub struct PartsPlugin;
 
@@ -78,6 +89,7 @@ impl Plugin for PartsPlugin {
             counts: false,
             main: Vec::new(),
             ms: Default::default(),
+            systems: Systems::default(),
         })
         .add_systems(First, |mut parts: ResMut<Parts>| {
             parts.since = Instant::now();
@@ -92,6 +104,14 @@ impl Plugin for PartsPlugin {
         .add_systems(Update, end::<6>.after(Rebuild).before(Cue))
         .add_systems(Update, end::<7>.after(Cue))
         .add_systems(Last, end::<8>.in_set(Counted));
+    }
+
+    fn cleanup(&self, app: &mut App) {
+        // Every other plugin has added its systems by now, and none has run.
+        if std::env::var_os(TIME_SYSTEMS).is_some() {
+            let systems = systems::time(app.world_mut());
+            app.world_mut().resource_mut::<Parts>().systems = systems;
+        }
     }
 }
 

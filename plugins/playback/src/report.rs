@@ -2,6 +2,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::SystemReport;
+
 /// A frame of a headset at 90 Hz has so many milliseconds.
 const FRAME_MS: f32 = 11.0;
 
@@ -37,6 +39,8 @@ pub struct Report {
     pub main_ms: FrameTimes,
     /// Where that time went, part by part of a frame; empty unless it was asked for.
     pub parts_ms: BTreeMap<String, FrameTimes>,
+    /// What each system took, the costliest first; empty unless `MIDAIR_TIME_SYSTEMS` is set.
+    pub systems: Vec<SystemReport>,
     /// What drawing each frame cost beside the main schedule; none unless it was asked for.
     pub drawn: Option<DrawnReport>,
     /// Seconds of processor time that the whole process took while it was played; none where the system does not say.

@@ -119,6 +119,7 @@ pub fn play(app: &mut App, session: Session, options: PlayOptions) -> Result<Rep
     report.cpu_seconds = cpu;
     if let Some(parts) = app.world_mut().remove_resource::<Parts>() {
         (report.main_ms, report.parts_ms) = parts.figures();
+        report.systems = parts.systems();
     }
     report.warnings = app
         .world()

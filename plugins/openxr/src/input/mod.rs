@@ -5,6 +5,7 @@ pub mod bindings;
 mod controllers;
 mod gather;
 mod keys;
+mod names;
 mod one_hand;
 mod read;
 
@@ -12,6 +13,7 @@ pub use controllers::{Controller, Controllers};
 pub(crate) use read::Input;
 
 use bevy::prelude::*;
+use midair_studio::StudioSet;
 use midair_studio::hands::{FilterHands, WriteHands};
 
 pub(crate) fn plugin(app: &mut App) {
@@ -24,7 +26,8 @@ pub(crate) fn plugin(app: &mut App) {
                 // Whoever wears the headset has the hands, whatever the mouse does.
                 .after(WriteHands)
                 .before(FilterHands),
-        );
+        )
+        .add_systems(Update, names::tell.in_set(StudioSet::Cue));
 }
 
 /// A session is gone: its controllers are nowhere.
