@@ -45,6 +45,8 @@ pub struct Gpu {
     adapter: Adapter,
     pub(crate) limits: wgpu::Limits,
     pub(crate) budget: u64,
+    /// The device is somebody else's as well, who draws with it.
+    shared: bool,
     /// Nanoseconds to a tick, where the device measures times.
     pub(crate) tick: Option<f32>,
 }
@@ -81,6 +83,24 @@ fn needs(limits: &wgpu::Limits) -> [(&'static str, u64, u64); 5] {
     ]
 }
 
+/// An error where an adapter allows less than is needed, or than a test asks for.
+fn enough(limits: &wgpu::Limits, adapter: &str, at_least: &wgpu::Limits) -> Result<(), GpuError> {
+    let least = at_least == &wgpu::Limits::default();
+    let asked = needs(at_least).map(|(_, has, _)| has);
+    for ((what, has, needs), asked) in needs(limits).into_iter().zip(asked) {
+        let needs = needs.max(if least { 0 } else { asked });
+        if has < needs {
+            return Err(GpuError::Limit {
+                adapter: adapter.to_owned(),
+                what,
+                has,
+                needs,
+            });
+        }
+    }
+    Ok(())
+}
+
 impl Gpu {
     /// All adapters of this machine, the ones to be preferred first.
     pub fn adapters() -> Vec<Adapter> {
@@ -110,6 +130,38 @@ impl Gpu {
         Self::of(first, described, options, sources, at_least)
     }
 
+    /// On a device that somebody else opened and draws with: surfaces that are made on it can be drawn without
+    /// coming back to main memory ([`GpuSolid::emit`](crate::GpuSolid::emit)). Its owner watches over its loss.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn share(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        adapter: Adapter,
+        options: &GpuOptions,
+    ) -> Result<Self, GpuError> {
+        if adapter.software && !options.software {
+            return Err(GpuError::Software(adapter.name));
+        }
+        let limits = device.limits();
+        enough(&limits, &adapter.name, &wgpu::Limits::default())?;
+        let timed = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let plain = Kernels::compile(&device, &sources(), false)?;
+        Ok(Self {
+            tick: timed.then(|| queue.get_timestamp_period()),
+            device,
+            queue,
+            plain,
+            quantised: OnceLock::new(),
+            lost: Arc::default(),
+            adapter,
+            limits,
+            budget: options.budget,
+            shared: true,
+        })
+    }
+
     fn of(
         adapter: &wgpu::Adapter,
         described: Adapter,
@@ -118,22 +170,7 @@ impl Gpu {
         at_least: &wgpu::Limits,
     ) -> Result<Self, GpuError> {
         let limits = adapter.limits();
-        let asked = needs(at_least).map(|(_, has, _)| has);
-        for ((what, has, needs), asked) in needs(&limits).into_iter().zip(asked) {
-            let needs = needs.max(if at_least == &wgpu::Limits::default() {
-                0
-            } else {
-                asked
-            });
-            if has < needs {
-                return Err(GpuError::Limit {
-                    adapter: described.name,
-                    what,
-                    has,
-                    needs,
-                });
-            }
-        }
+        enough(&limits, &described.name, at_least)?;
         let timed = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let refused = |e: wgpu::RequestDeviceError| GpuError::Device {
             adapter: described.name.clone(),
@@ -180,6 +217,7 @@ impl Gpu {
             adapter: described,
             limits,
             budget: options.budget,
+            shared: false,
             tick,
         })
     }
@@ -198,6 +236,34 @@ impl Gpu {
     /// What it runs on.
     pub fn adapter(&self) -> &Adapter {
         &self.adapter
+    }
+
+    /// Whether somebody else draws with the device.
+    pub fn is_shared(&self) -> bool {
+        self.shared
+    }
+
+    /// Does some work and tells what the device minded on the way. What nobody watches for ends whoever draws with it.
+    pub(crate) fn watched<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
+        use wgpu::ErrorFilter as Of;
+        let scopes = [Of::Internal, Of::OutOfMemory, Of::Validation];
+        let scopes = scopes.map(|of| self.device.push_error_scope(of));
+        let done = work();
+        // The one that was opened last is closed first.
+        let mut minded = None;
+        for scope in scopes.into_iter().rev() {
+            minded = block_on(scope.pop()).or(minded);
+        }
+        self.check()?;
+        let done = done?;
+        match minded {
+            None => Ok(done),
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::Full),
+            Some(e) => Err(GpuError::Refused(e.to_string())),
+        }
     }
 
     /// Whether the device measures how long passes take.

@@ -47,6 +47,9 @@ pub enum GpuError {
         /// How many were asked for.
         bytes: u64,
     },
+    /// The device has no memory left for its own needs.
+    #[error("the graphics card has no memory left for a pass")]
+    Full,
     /// More memory than was granted to the solid, or than one buffer of the device may have.
     #[error("the solid needs {needs} bytes for {what}, {budget} are granted; choose a larger step")]
     Budget {

@@ -30,9 +30,10 @@
 //! - `solid`: making and updating; `passes`: what is run for it, in which order.
 //! - [`measure`]: workloads that are timed.
 //! - `voxels`: a mesh as a volume brush.
-//! - `read`: meshes and fields back in main memory.
+//! - `emit`: a surface that is drawn where it is, or read back; `read`: fields back in main memory.
 
 mod device;
+mod emit;
 mod error;
 mod flatten;
 mod kernels;
@@ -46,6 +47,7 @@ mod voxels;
 mod wait;
 
 pub use device::{Adapter, Gpu, GpuOptions};
+pub use emit::{Emitted, INDEX_BYTES, Stretch, VERTEX_BYTES};
 pub use error::GpuError;
 pub use solid::{GpuSolid, Memory, SolidOptions, Timing};
 

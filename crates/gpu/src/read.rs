@@ -1,14 +1,12 @@
-//! Meshes and fields back in main memory, and fields from there.
+//! Fields back in main memory, and from there.
 
 use std::sync::Arc;
 
-use glam::{IVec3, Vec3};
+use glam::IVec3;
 use midair_field::{BRICK, Brick, Grid};
-use midair_mesh::TriMesh;
 
 use crate::Gpu;
 use crate::error::GpuError;
-use crate::kernels::binding;
 use crate::layout::{ALIVE, INSIDE, NEAR, NONE, STRIDE, Stage, counter};
 use crate::memory::{Room, buffer, read_back};
 use crate::passes::{Groups, Recorder};
@@ -18,73 +16,15 @@ use crate::solid::{GpuSolid, SolidOptions, corners, extract};
 const NODES: usize = BRICK * BRICK * BRICK;
 
 impl GpuSolid {
-    /// The whole surface as one welded mesh with unit normals. Vertices and triangles come in the order of the
-    /// bricks on the device, which may differ from run to run.
-    ///
-    /// # Errors
-    /// The device has no memory left or is lost.
-    pub fn mesh(&self) -> Result<TriMesh, GpuError> {
-        use wgpu::BufferUsages as Use;
-        let (triangles, vertices) = self.size();
-        let slots = self.counters[counter::SLOTS];
-        if triangles == 0 || slots == 0 {
-            self.gpu.check()?;
-            return Ok(TriMesh::default());
-        }
-        let gpu = &self.gpu;
-        let made = |what, bytes| buffer(gpu, what, bytes, Use::STORAGE | Use::COPY_SRC);
-        let (v_bytes, t_bytes) = (24 * u64::from(vertices), 12 * u64::from(triangles));
-        let tiles = self.room.slots.div_ceil(256);
-        let offsets = made("offsets", 8 * u64::from(self.room.slots + tiles))?;
-        let tight_vertices = made("a mesh's vertices", v_bytes)?;
-        let tight_indices = made("a mesh's triangles", t_bytes)?;
-        let renumbered = made(
-            "a mesh's numbers",
-            4 * u64::from(self.counters[counter::VERTICES]),
-        )?;
-        let told = buffer(
-            gpu,
-            "a mesh on its way",
-            v_bytes + t_bytes,
-            Use::MAP_READ | Use::COPY_DST,
-        )?;
-        let extra = [
-            (binding::OFFSETS, &offsets),
-            (binding::TIGHT_VERTICES, &tight_vertices),
-            (binding::TIGHT_INDICES, &tight_indices),
-            (binding::RENUMBERED, &renumbered),
-        ];
-        let k = gpu.kernels(self.room.quantised)?;
-        let mut recorder = Recorder::new(gpu, &self.buffers, None);
-        recorder.pass("compact", |p| {
-            let stage = Stage::default();
-            p.run(&k.scan_tiles, stage, Groups::Count(tiles), &extra);
-            p.run(&k.scan_sums, stage, Groups::Count(1), &extra);
-            p.run(&k.compact_vertices, stage, Groups::Count(slots), &extra);
-            p.run(&k.compact_triangles, stage, Groups::Count(slots), &extra);
-        });
-        let e = &mut recorder.encoder;
-        e.copy_buffer_to_buffer(&tight_vertices, 0, &told, 0, Some(v_bytes));
-        e.copy_buffer_to_buffer(&tight_indices, 0, &told, v_bytes, Some(t_bytes));
-        recorder.submit()?;
-        let words = read_back(gpu, &told, v_bytes + t_bytes)?;
-        let (points, corners) = words.split_at(6 * vertices as usize);
-        let three = |w: &[u32]| Vec3::from_array([w[0], w[1], w[2]].map(f32::from_bits));
-        Ok(TriMesh {
-            positions: points.chunks_exact(6).map(three).collect(),
-            normals: points.chunks_exact(6).map(|w| three(&w[3..])).collect(),
-            triangles: corners
-                .chunks_exact(3)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect(),
-        })
-    }
-
     /// The whole field. Inside bricks are given one by one: meant for tests and small solids.
     ///
     /// # Errors
     /// As [`GpuSolid::mesh`].
     pub fn grid(&self) -> Result<Grid, GpuError> {
+        self.gpu.watched(|| self.whole_grid())
+    }
+
+    fn whole_grid(&self) -> Result<Grid, GpuError> {
         let slots = u64::from(self.counters[counter::SLOTS]);
         let mut grid = Grid::new(self.globals.step);
         if slots == 0 {

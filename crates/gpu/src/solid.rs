@@ -84,11 +84,13 @@ impl GpuSolid {
         program: &Program,
         options: SolidOptions,
     ) -> Result<Self, GpuError> {
-        let flat = Flat::new(program)?;
-        let room = guess(program, &flat, options)?;
-        let mut solid = Self::empty(gpu, room, options)?;
-        solid.remake(program, &flat)?;
-        Ok(solid)
+        gpu.watched(|| {
+            let flat = Flat::new(program)?;
+            let room = guess(program, &flat, options)?;
+            let mut solid = Self::empty(gpu, room, options)?;
+            solid.remake(program, &flat)?;
+            Ok(solid)
+        })
     }
 
     /// A solid with room but nothing in it.
@@ -115,6 +117,11 @@ impl GpuSolid {
     /// # Errors
     /// As [`GpuSolid::make`]; the solid then holds nothing that can be relied on and the next update makes it whole.
     pub fn update(&mut self, program: &Program) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        gpu.watched(|| self.brought_up(program))
+    }
+
+    fn brought_up(&mut self, program: &Program) -> Result<(), GpuError> {
         let flat = Flat::new(program)?;
         // Taken out, so that an edit that fails half way is made up for as a whole.
         let before = self.program.take();
@@ -158,7 +165,8 @@ impl GpuSolid {
     /// # Errors
     /// As [`GpuSolid::make`].
     pub fn make_again(&mut self, program: &Program) -> Result<(), GpuError> {
-        self.remake(program, &Flat::new(program)?)
+        let gpu = self.gpu.clone();
+        gpu.watched(|| self.remake(program, &Flat::new(program)?))
     }
 
     /// Whether it lives on this device.

@@ -25,6 +25,10 @@ impl GpuSolid {
     /// # Errors
     /// A mesh too large for its step, or what the device lacks.
     pub fn from_mesh(gpu: &Arc<Gpu>, mesh: &TriMesh, step: f32) -> Result<Self, GpuError> {
+        gpu.watched(|| Self::brushed(gpu, mesh, step))
+    }
+
+    fn brushed(gpu: &Arc<Gpu>, mesh: &TriMesh, step: f32) -> Result<Self, GpuError> {
         let bounds = mesh.bounds();
         let (low, high) = (bounds.min / step, bounds.max / step);
         let sound = step > 0.0 && low.is_finite() && high.is_finite();

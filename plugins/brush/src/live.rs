@@ -11,7 +11,7 @@ use midair_studio::{
     evaluate::{Delivery, Evaluations, Key, Live},
     hands::Hands,
     project::Project,
-    show::{ObjectMap, Tint, display_steps, transform},
+    show::{CardWrites, ObjectMap, Seen, SeenParts, Tint, display_steps, transform},
 };
 
 use crate::{
@@ -29,9 +29,9 @@ pub struct Sketchpad {
     live: Live,
     /// What was there when the stroke was begun.
     begun: Option<(Option<ObjectId>, Option<RecipeHash>)>,
-    mesh: Option<Handle<Mesh>>,
+    mesh: Option<Seen>,
     /// What the painting showed before.
-    before: Option<Handle<Mesh>>,
+    before: Option<Seen>,
     /// What shows a painting that the document does not have yet.
     entity: Option<Entity>,
     material: Option<Handle<StandardMaterial>>,
@@ -88,9 +88,9 @@ pub(crate) fn follow(
     evaluations: Res<Evaluations>,
     map: Res<ObjectMap>,
     mut pad: ResMut<Sketchpad>,
-    mut meshes: ResMut<Assets<Mesh>>,
+    (mut meshes, mut writes): (ResMut<Assets<Mesh>>, ResMut<CardWrites>),
     mut materials: ResMut<Assets<StandardMaterial>>,
-    drawn: Query<&Mesh3d>,
+    drawn: Query<SeenParts>,
     mut commands: Commands,
 ) {
     let work = (*delivery == Delivery::AsTheyCome)
@@ -124,34 +124,37 @@ pub(crate) fn follow(
         pad.mesh = None;
         pad.before = None;
     }
-    let volumes = evaluations.volumes.clone();
-    if let Some(sketch) = pad.live.ask(&recipe, finest, &volumes) {
+    if let Some(sketch) = pad.live.ask(&recipe, finest, &evaluations) {
         if pad.took.len() == KEPT {
             pad.took.pop_front();
         }
         pad.took.push_back(sketch.took);
         pad.shown = Some(sketch.key);
-        pad.mesh = Some(meshes.add(sketch.mesh));
+        if let Some(seen) = pad.live.draw(sketch, &mut meshes, &mut writes) {
+            pad.mesh = Some(seen);
+        }
     }
     let Some(mesh) = pad.mesh.clone() else {
         return;
     };
     match work.painting.and_then(|id| map.get(id)) {
         Some(entity) => {
-            let now = drawn.get(entity).ok().map(|m| m.0.clone());
+            let now = drawn.get(entity).ok().map(Seen::of);
             if now.as_ref() != Some(&mesh) {
                 // Sketches come one after the other; anything else is the document's own.
                 if pad.before.is_none() {
                     pad.before = now;
                 }
-                commands.entity(entity).try_insert(Mesh3d(mesh));
+                mesh.worn_by(&mut commands.entity(entity));
             }
         }
         None => {
             let at = transform(&work.placement);
             match pad.entity {
                 Some(entity) => {
-                    commands.entity(entity).try_insert((Mesh3d(mesh), at));
+                    let mut entity = commands.entity(entity);
+                    entity.try_insert(at);
+                    mesh.worn_by(&mut entity);
                 }
                 None => {
                     let material = pad.material.get_or_insert_with(|| {
@@ -164,8 +167,9 @@ pub(crate) fn follow(
                     });
                     let look = MeshMaterial3d(material.clone());
                     let name = Name::new("Painting that is begun");
-                    let entity = commands.spawn((name, Mesh3d(mesh), look, at)).id();
-                    pad.entity = Some(entity);
+                    let mut entity = commands.spawn((name, look, at));
+                    mesh.worn_by(&mut entity);
+                    pad.entity = Some(entity.id());
                 }
             }
         }
@@ -187,7 +191,7 @@ fn finest(project: &Project, work: &Work, recipe: &Recipe) -> f32 {
 fn rest(
     project: &Project,
     map: &ObjectMap,
-    drawn: &Query<&Mesh3d>,
+    drawn: &Query<SeenParts>,
     pad: &mut ResMut<Sketchpad>,
     commands: &mut Commands,
 ) {
@@ -202,10 +206,10 @@ fn rest(
             let entity = map.get(id);
             let shows = entity.and_then(|e| drawn.get(e).ok());
             if now(id) == hash
-                && shows.is_some_and(|m| m.0 == mesh)
+                && shows.is_some_and(|(m, ..)| m.0 == mesh.mesh)
                 && let (Some(entity), Some(before)) = (entity, pad.before.take())
             {
-                commands.entity(entity).try_insert(Mesh3d(before));
+                before.worn_by(&mut commands.entity(entity));
             }
         }
     }

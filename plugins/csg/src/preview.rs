@@ -10,7 +10,7 @@ use midair_studio::{
     hold::Ghosted,
     project::Project,
     settings::Settings,
-    show::{Drafts, Drawn, Tint},
+    show::{CardWrites, Drafts, Drawn, Seen, Tint},
 };
 
 use crate::fuse::drafted_recipe;
@@ -80,7 +80,7 @@ impl Preview {
     fn show(
         &mut self,
         key: Key,
-        mesh: Handle<Mesh>,
+        seen: &Seen,
         origin: Vec3,
         materials: &mut Assets<StandardMaterial>,
         commands: &mut Commands,
@@ -88,7 +88,9 @@ impl Preview {
         self.shown = Some(key);
         let at = Transform::from_translation(origin);
         if let Some(entity) = self.entity {
-            commands.entity(entity).try_insert((Mesh3d(mesh), at));
+            let mut entity = commands.entity(entity);
+            entity.try_insert(at);
+            seen.worn_by(&mut entity);
             return;
         }
         let material = self.material.get_or_insert_with(|| {
@@ -101,7 +103,9 @@ impl Preview {
         });
         let look = MeshMaterial3d(material.clone());
         let name = Name::new("Preview");
-        self.entity = Some(commands.spawn((name, Mesh3d(mesh), look, at)).id());
+        let mut entity = commands.spawn((name, look, at));
+        seen.worn_by(&mut entity);
+        self.entity = Some(entity.id());
     }
 }
 
@@ -119,7 +123,7 @@ pub(crate) fn follow(
     (settings, delivery): (Res<Settings>, Res<Delivery>),
     mut evaluations: ResMut<Evaluations>,
     mut preview: ResMut<Preview>,
-    mut drawn: ResMut<Drawn>,
+    (mut drawn, mut writes): (ResMut<Drawn>, ResMut<CardWrites>),
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut commands: Commands,
@@ -145,7 +149,7 @@ pub(crate) fn follow(
             // A sketch on its way comes too late; nobody would take it in.
             preview.live.rest();
             let mesh = drawn.handle(fine, &made, &mut meshes);
-            preview.show(fine, mesh, origin, &mut materials, &mut commands);
+            preview.show(fine, &mesh.into(), origin, &mut materials, &mut commands);
             return;
         }
     }
@@ -153,11 +157,12 @@ pub(crate) fn follow(
     if preview.origin.replace(origin).is_some_and(|o| o != origin) {
         preview.live.clear();
     }
-    let volumes = evaluations.volumes.clone();
-    if let Some(sketch) = preview.live.ask(&recipe, document.step(), &volumes) {
+    if let Some(sketch) = preview.live.ask(&recipe, document.step(), &evaluations) {
         preview.note(sketch.took, moving);
-        let mesh = meshes.add(sketch.mesh);
-        preview.show(sketch.key, mesh, origin, &mut materials, &mut commands);
+        let key = sketch.key;
+        if let Some(seen) = preview.live.draw(sketch, &mut meshes, &mut writes) {
+            preview.show(key, &seen, origin, &mut materials, &mut commands);
+        }
     }
 }
 

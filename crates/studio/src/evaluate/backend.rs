@@ -3,11 +3,13 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use midair_field::{MeshSource, Placement, Program, Recipe};
-use midair_gpu::{Gpu, GpuError, GpuOptions, GpuSolid};
+use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid};
 use midair_mesh::TriMesh;
 
 pub use crate::settings::Backend as Choice;
+use crate::show::is_software;
 
 /// The choice between card and processor, shared by all evaluations.
 ///
@@ -20,10 +22,21 @@ struct Inner {
     /// Told on the command line: the settings do not change it.
     forced: bool,
     state: Mutex<(Choice, State)>,
+    /// The device that draws, where something is drawn.
+    drawing: Mutex<Option<Drawing>>,
+    /// What happened to a sketch, for the user.
+    untold: Mutex<Option<String>>,
     /// Held by whoever opens the card while others wait for it.
     opening: Mutex<()>,
     /// The solid that was made last, whose buffers the next one takes over.
     last: Mutex<Option<GpuSolid>>,
+}
+
+/// What pictures are drawn with.
+struct Drawing {
+    device: RenderDevice,
+    queue: RenderQueue,
+    adapter: Adapter,
 }
 
 enum State {
@@ -64,6 +77,8 @@ impl Backend {
         Self(Arc::new(Inner {
             forced,
             state: Mutex::new((choice, State::Unopened)),
+            drawing: Mutex::default(),
+            untold: Mutex::default(),
             opening: Mutex::default(),
             last: Mutex::default(),
         }))
@@ -75,6 +90,45 @@ impl Backend {
         if !self.0.forced && state.0 != choice {
             *state = (choice, State::Unopened);
         }
+    }
+
+    /// From here on a card that is opened is the one that draws: what it makes is drawn where it lies.
+    pub fn draw_with(&self, device: RenderDevice, queue: RenderQueue, info: &RenderAdapterInfo) {
+        let adapter = Adapter {
+            name: info.name.clone(),
+            api: format!("{:?}", info.backend),
+            software: is_software(info),
+        };
+        let mut drawing = self
+            .0
+            .drawing
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        *drawing = Some(Drawing {
+            device,
+            queue,
+            adapter,
+        });
+    }
+
+    /// Opens the card that draws, or, where nothing is drawn or that one will not do, one of its own.
+    fn open(&self, options: &GpuOptions) -> Result<Gpu, GpuError> {
+        let drawing = self
+            .0
+            .drawing
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if let Some(drawing) = &*drawing {
+            let (device, queue) = (
+                drawing.device.wgpu_device().clone(),
+                (***drawing.queue).clone(),
+            );
+            if let Ok(gpu) = Gpu::share(device, queue, drawing.adapter.clone(), options) {
+                return Ok(gpu);
+            }
+        }
+        drop(drawing);
+        Gpu::open(options)
     }
 
     /// Who makes solids, for people.
@@ -104,7 +158,7 @@ impl Backend {
                 state.1 = State::Opening;
                 let asked = self.clone();
                 let open = move || {
-                    let opened = Gpu::open(&GpuOptions::default());
+                    let opened = asked.open(&GpuOptions::default());
                     // What came of it is in the state.
                     let _ = asked.opened(Choice::Auto, opened);
                 };
@@ -135,7 +189,7 @@ impl Backend {
             (_, State::Closed(_)) => return Err(None),
             (_, state) => *state = State::Opening,
         }
-        let opened = Gpu::open(&GpuOptions {
+        let opened = self.open(&GpuOptions {
             software: true,
             ..GpuOptions::default()
         });
@@ -154,39 +208,95 @@ impl Backend {
         opened
     }
 
-    /// The solid by the card, if that is to make it and can.
-    pub(super) fn make(&self, recipe: &Recipe, step: f32, meshes: &dyn MeshSource) -> Asked {
+    /// The solid by the card, if that is to make it and can. Where the card draws as well, `early` has its surface
+    /// before main memory does.
+    pub(super) fn make(
+        &self,
+        recipe: &Recipe,
+        step: f32,
+        meshes: &dyn MeshSource,
+        early: &dyn Fn(Emitted),
+    ) -> Asked {
         let gpu = match self.card() {
             Ok(gpu) => gpu,
-            Err(line) => return Asked::Processor(line),
+            Err(line) => {
+                let mut untold = self.0.untold.lock().unwrap_or_else(PoisonError::into_inner);
+                return Asked::Processor(line.or_else(|| untold.take()));
+            }
         };
         // What a recipe lacks is told by the processor's path.
         let Ok(program) = Program::compile(recipe, &Placement::IDENTITY, step, meshes) else {
             return Asked::Processor(None);
         };
-        match self.on_card(&gpu, &program) {
+        match self.on_card(&gpu, &program, early) {
             Ok(made) => Asked::Made(made),
-            Err(GpuError::Unsupported(_) | GpuError::Budget { .. } | GpuError::TooFine(_)) => {
-                Asked::Processor(None)
-            }
             Err(error) => {
-                self.forget();
-                let mut state = self.state();
-                let first = matches!(state.1, State::Open(_));
-                // Memory comes back; a card that is gone or answers nonsense does not.
-                if !matches!(error, GpuError::OutOfMemory { .. }) {
-                    state.1 = State::Closed(error.to_string());
-                }
-                let line = format!(
-                    "{}; the processor makes the solid.",
-                    capital(&error.to_string())
-                );
-                Asked::Processor(first.then_some(line))
+                let line = self.failed(&error);
+                Asked::Processor(line)
             }
         }
     }
 
-    fn on_card(&self, gpu: &Arc<Gpu>, program: &Program) -> Result<OnCard, GpuError> {
+    /// A card that failed is not asked again, unless it only lacked memory; what the user should know of it, once.
+    fn failed(&self, error: &GpuError) -> Option<String> {
+        if let GpuError::Unsupported(_) | GpuError::Budget { .. } | GpuError::TooFine(_) = error {
+            return None;
+        }
+        self.forget();
+        let mut state = self.state();
+        let first = matches!(state.1, State::Open(_));
+        // Memory comes back; a card that is gone or answers nonsense does not.
+        if !matches!(error, GpuError::OutOfMemory { .. } | GpuError::Full) {
+            state.1 = State::Closed(error.to_string());
+        }
+        let line = format!(
+            "{}; the processor makes the solid.",
+            capital(&error.to_string())
+        );
+        first.then_some(line)
+    }
+
+    /// A sketch for the eye by the card, from the one before where there is one; `None` where the processor is to make
+    /// it.
+    pub(super) fn sketch(
+        &self,
+        recipe: &Recipe,
+        step: f32,
+        meshes: &dyn MeshSource,
+        last: Option<GpuSolid>,
+    ) -> Option<(GpuSolid, Emitted)> {
+        let gpu = self.card().map_err(|line| self.tell_later(line)).ok()?;
+        let program = Program::compile(recipe, &Placement::IDENTITY, step, meshes).ok()?;
+        let make = || {
+            let solid = match last {
+                Some(mut solid) if solid.is_on(&gpu) => {
+                    solid.update(&program)?;
+                    solid
+                }
+                _ => GpuSolid::make(&gpu, &program)?,
+            };
+            let surface = solid.emit()?;
+            Ok((solid, surface))
+        };
+        make()
+            .map_err(|error| self.tell_later(self.failed(&error)))
+            .ok()
+    }
+
+    /// A sketch has nobody to tell what happened to it; the next solid does.
+    fn tell_later(&self, line: Option<String>) {
+        if let Some(line) = line {
+            let mut untold = self.0.untold.lock().unwrap_or_else(PoisonError::into_inner);
+            *untold = Some(line);
+        }
+    }
+
+    fn on_card(
+        &self,
+        gpu: &Arc<Gpu>,
+        program: &Program,
+        early: &dyn Fn(Emitted),
+    ) -> Result<OnCard, GpuError> {
         let mut last = self.0.last.lock().unwrap_or_else(PoisonError::into_inner);
         let started = Instant::now();
         let solid = match last.take() {
@@ -197,7 +307,11 @@ impl Backend {
             _ => GpuSolid::make(gpu, program)?,
         };
         let made = started.elapsed();
-        let mesh = solid.mesh()?;
+        let emitted = solid.emit()?;
+        if gpu.is_shared() {
+            early(emitted.clone());
+        }
+        let mesh = emitted.mesh()?;
         let timing = solid.timing();
         *last = Some(solid);
         // Without a clock on the device all of it counts as fusing, all of the way back as extracting.
@@ -250,7 +364,7 @@ mod tests {
     fn the_processor_is_asked_where_it_was_chosen() {
         let backend = Backend::forced(Choice::Processor);
         assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &()),
+            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
             Asked::Processor(None)
         ));
         backend.follow(Choice::Card);
@@ -261,7 +375,7 @@ mod tests {
     fn nobody_waits_for_a_card_that_is_optional() {
         let backend = Backend::following(Choice::Auto);
         assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &()),
+            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
             Asked::Processor(None)
         ));
     }
@@ -269,7 +383,7 @@ mod tests {
     #[test]
     fn a_lost_card_is_told_once_and_the_processor_goes_on() {
         let backend = Backend::forced(Choice::Card);
-        let Some(first) = made(backend.make(&ball(0.1), 0.01, &())) else {
+        let Some(first) = made(backend.make(&ball(0.1), 0.01, &(), &|_| ())) else {
             // No adapter, not even software: said, and left to the processor.
             assert!(backend.says().contains("processor"), "{}", backend.says());
             eprintln!("skipped: {}", backend.says());
@@ -278,10 +392,10 @@ mod tests {
         let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
         assert!((first.mesh.volume() / exact - 1.0).abs() < 0.02);
         // The next takes over its buffers.
-        let second = made(backend.make(&ball(0.12), 0.01, &())).unwrap();
+        let second = made(backend.make(&ball(0.12), 0.01, &(), &|_| ())).unwrap();
         assert!(second.mesh.volume() > 1.5 * first.mesh.volume());
         backend.lose();
-        let Asked::Processor(Some(line)) = backend.make(&ball(0.1), 0.01, &()) else {
+        let Asked::Processor(Some(line)) = backend.make(&ball(0.1), 0.01, &(), &|_| ()) else {
             panic!("a lost card makes nothing");
         };
         assert!(
@@ -289,7 +403,7 @@ mod tests {
             "{line}"
         );
         assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &()),
+            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
             Asked::Processor(None)
         ));
         assert!(backend.says().contains("lost"), "{}", backend.says());

@@ -8,6 +8,7 @@ use midair_field::Placement;
 use midair_field::Recipe;
 use midair_field::bake::Progress;
 use midair_field::{Node, Place, Sweep};
+use midair_gpu::Emitted;
 use midair_library::Volumes;
 use midair_mesh::TriMesh;
 use midair_solid::{Clones, Solid, SolidError, clones, own_surface};
@@ -40,6 +41,8 @@ pub struct Made {
     pub warnings: Vec<String>,
     /// Field and surface of a painting, from which it is made again where a stroke changed it.
     pub solid: Option<Arc<Solid>>,
+    /// The card made it.
+    pub(crate) on_card: bool,
     /// Bytes held, about.
     pub bytes: usize,
 }
@@ -125,6 +128,7 @@ impl Made {
             extract_ms: 0.0,
             warnings: Vec::new(),
             solid: None,
+            on_card: false,
             bytes,
             places: None,
             pieces: std::sync::Mutex::default(),
@@ -142,6 +146,8 @@ pub(super) struct Running {
     pub wanted: u64,
     pub progress: Progress,
     pub cancelled: Arc<AtomicBool>,
+    /// Its surface on the card that draws, there before the outcome is.
+    pub early: Arc<OnceLock<Emitted>>,
     outcome: Arc<OnceLock<Option<Outcome>>>,
 }
 
@@ -152,6 +158,7 @@ impl Running {
             wanted: frame,
             progress: Progress::new(),
             cancelled: Arc::default(),
+            early: Arc::default(),
             outcome: Arc::default(),
         }
     }
@@ -176,6 +183,7 @@ impl Running {
         let step = self.key.step();
         let progress = self.progress.clone();
         let (cancelled, outcome) = (self.cancelled.clone(), self.outcome.clone());
+        let early = self.early.clone();
         move || {
             // A mesh that is baked on the way shows its progress and stops when asked to.
             let meshes = volumes.watched(&progress);
@@ -207,7 +215,9 @@ impl Running {
                 let mut line = None;
                 // A painting is kept with its field, and changes stroke by stroke: the processor's.
                 if !matches!(recipe.node(), Node::Canvas(_)) {
-                    match backend.make(&recipe, step, &meshes) {
+                    // Of one evaluation there is one surface.
+                    let early = |surface| drop(early.set(surface));
+                    match backend.make(&recipe, step, &meshes, &early) {
                         Asked::Made(on_card) => {
                             if cancelled.load(Ordering::Relaxed) {
                                 return Err(SolidError::Cancelled);
@@ -215,6 +225,7 @@ impl Running {
                             let mut made = Made::from_mesh(Arc::new(on_card.mesh));
                             made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
                             made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
+                            made.on_card = true;
                             return Ok(made);
                         }
                         Asked::Processor(why) => line = why,

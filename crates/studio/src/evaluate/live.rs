@@ -9,11 +9,12 @@ use bevy::prelude::*;
 use bevy::tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use midair_field::bake::Progress;
 use midair_field::{Placement, Recipe};
-use midair_library::Volumes;
+use midair_gpu::{Emitted, GpuSolid};
+use midair_mesh::Aabb;
 use midair_solid::Solid;
 
-use super::Key;
-use crate::show::to_bevy_mesh;
+use super::{Evaluations, Key};
+use crate::show::{CardMesh, CardWrites, Roomy, Seen, to_bevy_mesh};
 
 /// Slower than this and the next is made coarser: with the frame that shows it, twenty a second.
 const SLOW: Duration = Duration::from_millis(40);
@@ -77,18 +78,41 @@ struct Flight {
 
 /// One that has come.
 struct Landed {
-    solid: Arc<Solid>,
-    drawn: Mesh,
+    base: Base,
+    picture: Picture,
     took: Duration,
     remade: bool,
 }
 
-/// A coarse solid, ready to be drawn.
+/// What the next one is made from.
+enum Base {
+    Processor(Arc<Solid>),
+    Card(Box<GpuSolid>),
+}
+
+impl Base {
+    fn step(&self) -> f32 {
+        match self {
+            Self::Processor(solid) => solid.grid().step(),
+            Self::Card(solid) => solid.step(),
+        }
+    }
+}
+
+/// How it can be drawn.
+enum Picture {
+    Mesh(Mesh),
+    /// The card made it, and there was no room for it where the card draws.
+    Roomy(Roomy, Aabb),
+    /// It lies on the card.
+    Surface(Emitted, Aabb),
+}
+
+/// A coarse solid, ready to be drawn by [`Live::draw`].
 pub struct Sketch {
     /// Of which recipe, at which step.
     pub key: Key,
-    /// Its surface.
-    pub mesh: Mesh,
+    picture: Picture,
     /// How long it took to make.
     pub took: Duration,
 }
@@ -101,15 +125,22 @@ pub struct Sketch {
 #[derive(Default)]
 pub struct Live {
     flight: Option<Flight>,
-    last: Option<Arc<Solid>>,
+    last: Option<Base>,
     shown: Option<Key>,
     pace: Pace,
+    /// What the card draws sketches into.
+    card: Option<CardMesh>,
 }
 
 impl Live {
     /// To be asked every frame for what is wanted now, `finest` being the step it has at rest.
     /// Gives what has come since, be it of this recipe or of an earlier one.
-    pub fn ask(&mut self, recipe: &Recipe, finest: f32, volumes: &Arc<Volumes>) -> Option<Sketch> {
+    pub fn ask(
+        &mut self,
+        recipe: &Recipe,
+        finest: f32,
+        evaluations: &Evaluations,
+    ) -> Option<Sketch> {
         let come = self.land();
         let key = Key::new(recipe, self.pace.step(finest));
         if let Some(flight) = &self.flight
@@ -124,9 +155,37 @@ impl Live {
         let there = self.shown.is_some_and(|s| s.recipe == key.recipe);
         if self.flight.is_none() && !there {
             let key = Key::new(recipe, self.pace.step(finest));
-            self.flight = Some(start(key, recipe.clone(), self.last.clone(), volumes));
+            let room = self.card.as_ref().map(CardMesh::room);
+            // A sketch on the card changes where it lies; a flight that is given up takes it along.
+            let last = match &self.last {
+                Some(Base::Processor(solid)) => Some(Base::Processor(solid.clone())),
+                _ => self.last.take(),
+            };
+            self.flight = Some(start(key, recipe.clone(), last, room, evaluations));
         }
         come
+    }
+
+    /// What draws a sketch that has come: where it lies on the card, or from main memory.
+    pub fn draw(
+        &mut self,
+        sketch: Sketch,
+        meshes: &mut Assets<Mesh>,
+        writes: &mut CardWrites,
+    ) -> Option<Seen> {
+        match sketch.picture {
+            Picture::Mesh(mesh) => Some(meshes.add(mesh).into()),
+            Picture::Roomy(roomy, around) => {
+                let mesh = roomy.added(meshes);
+                let seen = mesh.seen(around);
+                self.card = Some(mesh);
+                Some(seen)
+            }
+            Picture::Surface(surface, around) => {
+                let mesh = self.card.as_ref()?;
+                mesh.write(&surface, writes).then(|| mesh.seen(around))
+            }
+        }
     }
 
     /// Begins with a solid that is there already, made at `finest` halved or doubled some times: what is
@@ -138,7 +197,7 @@ impl Live {
             coarser: (2.0 * doublings).round().clamp(0.0, COARSEST as f32) as u32,
             quick: 0,
         };
-        self.last = Some(with);
+        self.last = Some(Base::Processor(with));
     }
 
     /// Whether one is on its way.
@@ -177,10 +236,10 @@ impl Live {
         if landed.remade || landed.took > SLOW {
             self.pace.note(landed.took);
         }
-        self.last = Some(landed.solid);
+        self.last = Some(landed.base);
         Some(Sketch {
             key,
-            mesh: landed.drawn,
+            picture: landed.picture,
             took: landed.took,
         })
     }
@@ -200,8 +259,14 @@ fn workers() -> Option<&'static rayon::ThreadPool> {
     POOL.get_or_init(make).as_ref()
 }
 
-fn start(key: Key, recipe: Recipe, last: Option<Arc<Solid>>, volumes: &Arc<Volumes>) -> Flight {
-    let volumes = volumes.clone();
+fn start(
+    key: Key,
+    recipe: Recipe,
+    last: Option<Base>,
+    room: Option<(u32, u32)>,
+    evaluations: &Evaluations,
+) -> Flight {
+    let (volumes, backend) = (evaluations.volumes.clone(), evaluations.backend.clone());
     let progress = Progress::new();
     let cancelled = Arc::new(AtomicBool::new(false));
     let (watched, stop) = (progress.clone(), cancelled.clone());
@@ -210,18 +275,50 @@ fn start(key: Key, recipe: Recipe, last: Option<Arc<Solid>>, volumes: &Arc<Volum
             let meshes = volumes.watched(&watched);
             let (at, step) = (Placement::IDENTITY, key.step());
             let since = Instant::now();
-            let last = last.filter(|l| l.grid().step() == step);
-            let solid = match &last {
+            let last = last.filter(|l| l.step() == step);
+            let remade = last.is_some();
+            let (solid, on_card) = match last {
+                Some(Base::Processor(solid)) => (Some(solid), None),
+                Some(Base::Card(solid)) => (None, Some(*solid)),
+                None => (None, None),
+            };
+            // What was made by the processor goes on there.
+            let by_card = if solid.is_none() {
+                backend.sketch(&recipe, step, &meshes, on_card)
+            } else {
+                None
+            };
+            if let Some((solid, surface)) = by_card {
+                let around = recipe.bounds().grown(step);
+                let drawn = surface.is_drawn() && room.is_some_and(|(v, i)| surface.fits(v, i));
+                let picture = if drawn {
+                    Picture::Surface(surface, around)
+                } else {
+                    let mesh = surface.mesh().ok()?;
+                    if surface.is_drawn() {
+                        Picture::Roomy(Roomy::new(&mesh), around)
+                    } else {
+                        Picture::Mesh(to_bevy_mesh(&mesh))
+                    }
+                };
+                return Some(Landed {
+                    picture,
+                    took: since.elapsed(),
+                    remade,
+                    base: Base::Card(Box::new(solid)),
+                });
+            }
+            let made = match &solid {
                 Some(last) => last.remake(&recipe, &at, step, &meshes, &stop),
                 None => Solid::make(&recipe, &at, step, &meshes, &stop),
             };
-            let solid = Arc::new(solid.ok()?);
-            let drawn = to_bevy_mesh(&solid.mesh());
+            let solid = Arc::new(made.ok()?);
+            let picture = Picture::Mesh(to_bevy_mesh(&solid.mesh()));
             Some(Landed {
-                drawn,
+                picture,
                 took: since.elapsed(),
-                remade: last.is_some(),
-                solid,
+                remade,
+                base: Base::Processor(solid),
             })
         };
         // A sketch that fails is left out; what update makes says why.

@@ -15,8 +15,10 @@ use std::sync::atomic::Ordering;
 
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
+use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use bevy::tasks::AsyncComputeTaskPool;
 use midair_field::{Recipe, RecipeHash};
+use midair_gpu::Emitted;
 use midair_library::Volumes;
 use midair_solid::Solid;
 
@@ -80,6 +82,8 @@ pub struct Evaluations {
     pub backend: Backend,
     made: Memory,
     running: Vec<Running>,
+    /// Surfaces on the card that draws, of what this frame took in.
+    fresh: HashMap<Key, Emitted>,
     failed: HashMap<Key, String>,
     counted: Vec<Key>,
     updates: Vec<Update>,
@@ -96,6 +100,7 @@ impl Evaluations {
             backend: Backend::forced(Choice::Processor),
             made: Memory::default(),
             running: Vec::new(),
+            fresh: HashMap::default(),
             failed: HashMap::default(),
             counted: Vec::new(),
             updates: Vec::new(),
@@ -143,6 +148,14 @@ impl Evaluations {
     /// What is made already, without asking for it or keeping it longer.
     pub fn made(&self, key: &Key) -> Option<Arc<Made>> {
         self.made.look(key)
+    }
+
+    /// Its surface on the card that draws, from when that has made it until the frame that takes the solid in: what can
+    /// be seen before it can be touched. For the eye alone, so no session knows of it.
+    pub fn surface(&self, key: &Key) -> Option<Emitted> {
+        let on_its_way = self.running.iter().find(|r| r.key == *key);
+        let early = on_its_way.and_then(|r| r.early.get());
+        early.or_else(|| self.fresh.get(key)).cloned()
     }
 
     /// Why it cannot be made, if it was tried.
@@ -229,6 +242,9 @@ impl Evaluations {
                 continue;
             };
             let running = self.running.remove(at);
+            if let Some(surface) = running.early.get() {
+                self.fresh.insert(key, surface.clone());
+            }
             match running.take() {
                 Some(Ok(made)) => {
                     delivered.push(key.job());
@@ -270,7 +286,22 @@ pub(crate) fn plugin(app: &mut App) {
         .init_resource::<Delivered>()
         // Results are taken in before the entities follow and ask for new ones.
         .configure_sets(Update, Deliver.in_set(StudioSet::Rebuild))
+        .add_systems(Startup, draw_with)
         .add_systems(Update, (choose, deliver).chain().in_set(Deliver));
+}
+
+/// What the card makes is drawn by the same device, where something is drawn.
+fn draw_with(
+    device: Option<Res<RenderDevice>>,
+    queue: Option<Res<RenderQueue>>,
+    adapter: Option<Res<RenderAdapterInfo>>,
+    evaluations: Res<Evaluations>,
+) {
+    if let (Some(device), Some(queue), Some(adapter)) = (device, queue, adapter) {
+        evaluations
+            .backend
+            .draw_with(device.clone(), queue.clone(), &adapter);
+    }
 }
 
 /// The setting reaches whoever makes solids before new ones are asked for.
@@ -288,6 +319,7 @@ fn deliver(
 ) {
     delivered.0.clear();
     evaluations.frame += 1;
+    evaluations.fresh.clear();
     evaluations.take_in(&delivery, &mut delivered.0, &mut notices);
     evaluations.drop_stale();
 }

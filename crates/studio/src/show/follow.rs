@@ -8,11 +8,12 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Collider;
 use midair_document::{Document, Kind, Object, ObjectId};
-use midair_field::{Node, Recipe};
+use midair_field::{Node, Recipe, RecipeHash};
+use midair_gpu::Emitted;
 use midair_mesh::{MeshHash, TriMesh};
 
 use super::material::{Dress, Worn};
-use super::{Drafts, transform};
+use super::{CardMesh, CardWrites, Drafts, Seen, transform};
 use crate::StudioSet;
 use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made, ONE_BY_ONE, merged};
 use crate::pick::Proxy;
@@ -46,6 +47,72 @@ struct Showing {
     /// Keeps what is drawn in memory.
     made: Option<Arc<Made>>,
     proxy: Option<Entity>,
+    /// The recipe that it came with.
+    first: Option<RecipeHash>,
+    /// What the card draws it with, once it was changed.
+    card: Option<OnCard>,
+}
+
+/// A mesh that the card writes into, and what it shows; `None` while another mesh is shown.
+struct OnCard {
+    mesh: CardMesh,
+    shows: Option<Key>,
+}
+
+impl Showing {
+    /// What the card has made is drawn before it can be touched, if there is room for it.
+    fn draw_early(
+        &mut self,
+        (key, surface): (Key, Emitted),
+        recipe: &Recipe,
+        writes: &mut CardWrites,
+        entity: &mut EntityCommands,
+    ) {
+        let Some(card) = &mut self.card else { return };
+        if card.shows != Some(key) && card.mesh.write(&surface, writes) {
+            card.shows = Some(key);
+            card.mesh
+                .seen(recipe.bounds().grown(key.step()))
+                .worn_by(entity);
+        }
+    }
+
+    /// Draws a solid that has come: where it lies on the card, or from main memory.
+    fn draw(
+        &mut self,
+        (key, made): (Key, &Made),
+        recipe: &Recipe,
+        surface: Option<Emitted>,
+        (writes, drawn, meshes): (&mut CardWrites, &mut Drawn, &mut Assets<Mesh>),
+        entity: &mut EntityCommands,
+    ) {
+        if let Some(surface) = surface {
+            self.draw_early((key, surface), recipe, writes, entity);
+        }
+        let around = recipe.bounds().grown(key.step());
+        if let Some(card) = self.card.as_ref().filter(|c| c.shows == Some(key)) {
+            card.mesh.seen(around).worn_by(entity);
+            return;
+        }
+        // The first is shared with all that look like it; what then changes has a mesh of its own.
+        let changed = *self.first.get_or_insert(key.recipe) != key.recipe;
+        if made.on_card && changed && writes.can_draw() {
+            let mesh = CardMesh::new(&made.mesh, meshes);
+            mesh.seen(around).worn_by(entity);
+            self.card = Some(OnCard {
+                mesh,
+                shows: Some(key),
+            });
+            return;
+        }
+        let plain = Seen::from(drawn.handle(key, made, meshes));
+        match self.card.as_mut().and_then(|c| c.shows.take()) {
+            Some(_) => plain.worn_by(entity),
+            None => {
+                entity.try_insert(Mesh3d(plain.mesh));
+            }
+        }
+    }
 }
 
 /// One clone of a row: a child of the row's own entity.
@@ -159,7 +226,7 @@ fn place(
 fn show(
     project: Res<Project>,
     mut evaluations: ResMut<Evaluations>,
-    mut drawn: ResMut<Drawn>,
+    (mut drawn, mut writes): (ResMut<Drawn>, ResMut<CardWrites>),
     mut meshes: ResMut<Assets<Mesh>>,
     mut objects: Query<(Entity, &ObjectEntity, &mut Showing, Worn, Option<&Children>)>,
     stand_ins: Query<(), Or<(With<StandIn>, With<CloneOf>)>>,
@@ -185,6 +252,11 @@ fn show(
             Kind::Solid(recipe) | Kind::Sheet(recipe) => {
                 // The document's step first, which is what update makes; then finer, for the eye.
                 let mut steps = display_steps(document, object, recipe);
+                // Drawn on the card, and taken back before it could be touched: what was there is drawn again.
+                let early = showing.card.as_ref().and_then(|c| c.shows);
+                if early.is_some_and(|k| k.recipe != recipe.hash()) && early != showing.solid {
+                    showing.solid = None;
+                }
                 let shown = showing.solid;
                 let painted = matches!(recipe.node(), Node::Canvas(_));
                 let before = shown.filter(|_| painted).map(|k| k.recipe);
@@ -193,7 +265,8 @@ fn show(
                     steps.truncate(1);
                 }
                 let best = steps
-                    .into_iter()
+                    .iter()
+                    .copied()
                     .take_while(|&s| shown != Some(Key::new(recipe, s)))
                     .filter_map(|s| {
                         let made = evaluations.want_after(recipe, s, before)?;
@@ -201,6 +274,15 @@ fn show(
                     })
                     .next();
                 let Some((key, made)) = best else {
+                    let surface = steps
+                        .iter()
+                        .map(|&s| Key::new(recipe, s))
+                        .take_while(|k| shown != Some(*k))
+                        .find_map(|k| Some((k, evaluations.surface(&k)?)));
+                    if let Some(surface) = surface {
+                        let mut entity = commands.entity(entity);
+                        showing.draw_early(surface, recipe, &mut writes, &mut entity);
+                    }
                     if showing.made.is_none() && children.is_none() {
                         stand_in(
                             recipe,
@@ -214,9 +296,9 @@ fn show(
                     continue;
                 };
                 showing.solid = Some(key);
-                let handle = drawn.handle(key, &made, &mut meshes);
                 match &made.places {
                     Some(places) => {
+                        let handle = drawn.handle(key, &made, &mut meshes);
                         commands.entity(entity).remove::<Mesh3d>();
                         let pieces = made.pieces.lock().map(|mut p| std::mem::take(&mut *p));
                         // They were drawn before, and let go since.
@@ -238,7 +320,10 @@ fn show(
                         stand(each, &Dress::of(look), entity, id.0, &mut commands);
                     }
                     None => {
-                        commands.entity(entity).insert(Mesh3d(handle));
+                        let surface = evaluations.surface(&key);
+                        let with = (&mut *writes, &mut *drawn, &mut *meshes);
+                        let mut entity = commands.entity(entity);
+                        showing.draw((key, &made), recipe, surface, with, &mut entity);
                     }
                 }
                 made

@@ -1,5 +1,6 @@
 //! Entities that follow the document, and how they look.
 
+mod card;
 mod cue;
 mod ease;
 mod follow;
@@ -16,6 +17,8 @@ use bevy::prelude::*;
 use midair_document::ObjectId;
 use midair_field::Placement;
 
+pub(crate) use card::Roomy;
+pub use card::{CardMesh, CardWrites, Seen, SeenParts};
 pub use cue::{Cue, Cues, Tint};
 pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh};
 pub use form::form;
@@ -71,6 +74,7 @@ pub fn transform(p: &Placement) -> Transform {
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Drafts>().init_resource::<Cues>();
+    card::plugin(app);
     follow::plugin(app);
     material::plugin(app);
     readout::plugin(app);
