@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::life::focus;
 use crate::perform::Performer;
-use crate::room::{LIBRARY, TUTORIAL, WRIST, Wand};
+use crate::room::{LIBRARY, TUTORIAL, Wand};
 use crate::stage::{App, Runtime, midair};
 
 /// Where the cube is put, and the sphere at a corner of it; and a point of each that is not in the other.
