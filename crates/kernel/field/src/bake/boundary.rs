@@ -54,9 +54,9 @@ fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, step: f32, progress: &Progress) -> P
         .fold(0.0, f32::max);
     let bounds = |w: [f32; 3]| {
         let p = v[0] * w[0] + v[1] * w[1] + v[2] * w[2];
-        let inside = |p| tree.winding(p).round() != 0.0;
-        let off = n * (2e-3 * step);
-        inside(p + off) != inside(p - off)
+        let sides = tree.winding_beside(p, n * (2e-3 * step));
+        let [above, below] = sides.map(|w| w.round() != 0.0);
+        above != below
     };
     if longest < 4.0 * step {
         let third = 1.0 / 3.0;

@@ -104,14 +104,14 @@ impl Triangle {
         nearest
     }
 
-    /// The solid angle seen from `p`, over 4π; positive where `p` lies behind the triangle
-    /// (van Oosterom and Strackee 1983).
+    /// Half the solid angle seen from `p` as the angle of a complex number, its real part first; positive
+    /// where `p` lies behind the triangle (van Oosterom and Strackee 1983).
     #[inline]
-    pub fn winding(&self, p: Vec3) -> f64 {
+    pub fn angle(&self, p: Vec3) -> (f64, f64) {
         let [a, b, c] = self.v.map(|v| (v - p).as_dvec3());
         let (la, lb, lc) = (a.length(), b.length(), c.length());
         let numerator = a.dot(b.cross(c));
         let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-        numerator.atan2(denominator) * (1.0 / std::f64::consts::TAU)
+        (denominator, numerator)
     }
 }
