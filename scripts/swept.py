@@ -3,7 +3,8 @@
 
     scripts/swept.py
 
-figure-10: closed curves, each swept a little. figure-11: one curve with clones, its points spread in three ways.
+figure-1: an open surface, a tube and cloned meshes. figure-10: closed curves, each swept a little, two of them crossing
+themselves. figure-11: one curve with clones, its points spread in three ways.
 figure-13: a shell, a horn, a knot and a spiral of clones, as in Figures 1 and 13 of the Hermite motion controller.
 """
 from math import cos, pi, sin
@@ -43,7 +44,12 @@ class Session:
     def go(self, left, right, over):
         self.say(f"Both(left: {hand(*left)}, right: {hand(*right)}, over: {num(over)}),")
 
-    def sweep(self, ways, over, colour=None):
+    def look(self, colour, material=None):
+        self.say(f"Ask(Objects(Colour(colour: ({colour[0]}, {colour[1]}, {colour[2]})))),")
+        if material:
+            self.say(f'Ask(Objects(Material(material: "{material}"))),')
+
+    def sweep(self, ways, over, colour=None, material=None):
         """The hands go to the first place, and along the rest with the trigger held."""
         self.go(*ways[0], 0.9)
         self.say("Wait(0.5),")
@@ -54,7 +60,7 @@ class Session:
         self.say("Wait(0.2),")
         self.made += 1
         if colour:
-            self.say(f"Ask(Objects(Colour(colour: ({colour[0]}, {colour[1]}, {colour[2]})))),")
+            self.look(colour, material)
 
     def write(self):
         body = "\n".join(f"        {s}" if s else "" for s in self.steps)
@@ -68,6 +74,9 @@ class Session:
     steps: [
         Ask(Mode("sweep")),
 {body}
+        Ask(Objects(SelectNone)),
+        // The hands go out of the picture.
+        Both(left: (to: (-0.2, 1.0, 3.0)), right: (to: (0.2, 1.0, 3.0)), over: 3),
         Expect(objects: {self.made}, warnings: 0),
     ],
 )
@@ -75,20 +84,72 @@ class Session:
         (OUT / f"{self.name}.ron").write_text(text)
 
 
-def figure_10():
-    s = Session("figure-10", "Closed curves", "Closed curves as in Fig. 10: each is swept a little and closed by its caps.")
+def figure_1():
+    s = Session("figure-1", "An open surface, a tube and cloned meshes", "Models as in Fig. 1: an open surface, a tube that rolls itself up, and cones that stand over a dome.")
+    s.set("smooth", "8")
+    s.set("count", "96")
+    s.note("A ruffle: its inner edge rises in a spiral, its outer one waves around it.")
+    s.shape("Surface")
+    ways = []
+    for i in range(73):
+        t = i / 72
+        a = 2 * pi * 1.6 * t
+        r = 0.2 + 0.04 * sin(5 * a)
+        inner = (-0.62 + 0.035 * cos(a), 0.92 + 0.34 * t, 0.035 * sin(a))
+        outer = (-0.62 + r * cos(a), 0.86 + 0.34 * t + 0.05 * cos(5 * a), r * sin(a))
+        ways.append(((inner, (0, -a * 180 / pi, 40)), (outer, (0, -a * 180 / pi, -35))))
+    s.sweep(ways, 0.13, (232, 152, 118))
+    s.note("A snail: the tube widens as it goes round and up.")
     s.shape("Tube")
-    # Where it stands, how the hands are rolled and turned.
+    ways = []
+    for i in range(64):
+        t = i / 63
+        a = 2 * pi * 2.2 * t
+        r = 0.05 + 0.16 * t
+        half = 0.012 + 0.075 * t
+        out = (cos(a), 0, sin(a))
+        middle = (0.02 + r * out[0], 1.22 - 0.26 * t, r * out[2])
+        left = [m - half * o for m, o in zip(middle, out)]
+        right = [m + half * o for m, o in zip(middle, out)]
+        yaw = -a * 180 / pi
+        ways.append(((left, (0, yaw, 70)), (right, (0, yaw, -70))))
+    s.sweep(ways, 0.16, (108, 150, 206))
+    s.note("Cones over a dome: they stand closer, and are smaller, towards its middle.")
+    s.shape("Clones")
+    s.set("item", '{\\"Component\\": \\"solid/cone\\"}')
+    s.set("spread", "true")
+    s.set("clones", "10")
+    s.set("clone_size", "0.062")
+    s.slopes(0.35, 1.3)
+    ways = []
+    for i in range(49):
+        t = i / 48
+        a = 2 * pi * t * 0.985
+        top = (0.66 + 0.02 * cos(a), 1.2, 0.02 * sin(a))
+        rim = (0.66 + 0.22 * cos(a), 0.96, 0.22 * sin(a))
+        yaw = -a * 180 / pi
+        ways.append(((top, (0, yaw, 0)), (rim, (0, yaw, -75))))
+    s.sweep(ways, 0.13, (150, 186, 112))
+    s.write()
+
+
+def figure_10():
+    s = Session("figure-10", "Closed curves", "Closed curves as in Fig. 10, two of which cross themselves: each is swept a little and closed by its caps.")
+    s.shape("Tube")
+    s.set("count", "96")
+    # Where it stands, how the hands are rolled.
     for x, y, left, right in [
-        (-0.45, 1.35, (0, 0, 60), (0, 0, -60)),
-        (0.0, 1.35, (0, 0, 90), (0, 0, -20)),
-        (0.45, 1.35, (0, 0, 120), (0, 0, -120)),
-        (-0.45, 1.0, (0, 0, 35), (0, 0, -100)),
-        (0.0, 1.0, (0, 0, 150), (0, 0, -60)),
-        (0.45, 1.0, (0, 0, -70), (0, 0, 130)),
+        (-0.5, 1.3, (0, 0, 60), (0, 0, -60)),
+        (-0.17, 1.3, (0, 0, 90), (0, 0, -20)),
+        (0.17, 1.3, (0, 0, 120), (0, 0, -120)),
+        (0.5, 1.3, (0, 0, 75), (0, 0, 75)),
+        (-0.5, 1.0, (0, 0, 35), (0, 0, -100)),
+        (-0.17, 1.0, (0, 0, 150), (0, 0, -60)),
+        (0.17, 1.0, (0, 0, -70), (0, 0, 130)),
+        (0.5, 1.0, (0, 0, 100), (0, 0, 50)),
     ]:
-        ways = [(((x - 0.11, y, z), left), ((x + 0.11, y, z), right)) for z in (0.02, -0.02)]
-        s.sweep(ways, 0.4, (222, 214, 196))
+        ways = [(((x - 0.1, y, z), left), ((x + 0.1, y, z), right)) for z in (0.03, -0.03)]
+        s.sweep(ways, 0.4, (222, 190, 130))
     s.write()
 
 
@@ -176,6 +237,7 @@ def figure_13():
 
 
 if __name__ == "__main__":
+    figure_1()
     figure_10()
     figure_11()
     figure_13()

@@ -190,37 +190,63 @@ fn store(image: Image, file: &Path) -> Result<()> {
         .map_err(|e| anyhow::anyhow!("{} was not written: {e}", file.display()))
 }
 
-/// Looks at everything from the front, a little from above and the right.
+/// Looks at everything from the front, a little from above and the right, so near that it fills the picture.
 fn frame_all(world: &World) -> Transform {
-    let mut low = Vec3::INFINITY;
-    let mut high = Vec3::NEG_INFINITY;
     let document = world.resource::<Project>().document();
+    let mut corners: Vec<Vec3> = Vec::new();
     for (id, object) in document.objects() {
-        // What is drawn stands anywhere in its own frame.
-        if object.recipe().is_none()
-            && let Some((least, most)) = extent(document, [id])
-        {
-            low = low.min(least);
-            high = high.max(most);
-            continue;
+        // A box around what is drawn, which stands anywhere in its own frame.
+        let bounds = object.shown().map(|r| r.bounds());
+        if let Some(b) = bounds.filter(|b| !b.is_empty()) {
+            let there = object.placement.affine();
+            corners.extend(box_corners(b.min, b.max).map(|p| there.transform_point3(p)));
+        } else if let Some((low, high)) = extent(document, [id]) {
+            corners.extend(box_corners(low, high));
         }
-        let radius = object
-            .recipe()
-            .map(|r| r.bounds())
-            .filter(|b| !b.is_empty())
-            .map_or(0.3, |b| {
-                0.8 * (b.min.abs().max(b.max.abs()) * object.placement.scale.abs()).length()
-            });
-        low = low.min(object.placement.translation - radius);
-        high = high.max(object.placement.translation + radius);
     }
-    let (centre, radius) = if low.cmple(high).all() {
-        (low.midpoint(high), 0.5 * (high - low).length())
-    } else {
-        (Vec3::new(0.0, 0.2, 0.0), 0.6)
-    };
+    if corners.is_empty() {
+        corners.extend(box_corners(
+            Vec3::new(-0.3, -0.1, -0.3),
+            Vec3::new(0.3, 0.5, 0.3),
+        ));
+    }
+    let low = corners.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
+    let high = corners.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
     let from = Vec3::new(0.55, 0.42, 1.0).normalize();
-    Transform::from_translation(centre + from * radius * 2.3).looking_at(centre, Vec3::Y)
+    let turn = Transform::IDENTITY.looking_to(-from, Vec3::Y).rotation;
+    // The view's own middle and half of what it sees of a metre away, upwards and to the side.
+    let tall = (0.5 * PerspectiveProjection::default().fov).tan() * FILLED;
+    let wide = tall * 16.0 / 9.0;
+    let mut centre = low.midpoint(high);
+    let mut away = 0.0f32;
+    // What is near looks larger: the middle of what is seen is not that of the box.
+    for _ in 0..4 {
+        let seen = corners.iter().map(|p| turn.inverse() * (*p - centre));
+        away = seen
+            .clone()
+            .map(|p| p.z + (p.x.abs() / wide).max(p.y.abs() / tall))
+            .fold(0.02, f32::max);
+        let ends = seen.fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[a, b], p| {
+            let on = p.truncate() / (away - p.z).max(1e-4);
+            [a.min(on), b.max(on)]
+        });
+        centre += turn * (ends[0].midpoint(ends[1]) * away).extend(0.0);
+    }
+    Transform::from_translation(centre + from * away).looking_at(centre, Vec3::Y)
+}
+
+/// How much of a picture is filled, at most.
+const FILLED: f32 = 0.86;
+
+fn box_corners(low: Vec3, high: Vec3) -> [Vec3; 8] {
+    std::array::from_fn(|k| {
+        let side = |bit: usize, a: f32, b: f32| if k >> bit & 1 == 0 { a } else { b };
+        Vec3::new(
+            side(0, low.x, high.x),
+            side(1, low.y, high.y),
+            side(2, low.z, high.z),
+        )
+    })
 }
 
 /// Frames between two things that are asked for: panels take their places.

@@ -24,7 +24,9 @@ pub fn own_surface(recipe: &Recipe) -> Option<Surface> {
         Node::Component { recipe, .. } => own_surface(recipe),
         Node::Sweep(sweep) if sweep.is_closed() => {
             let solid = sweep.solid().ok()?;
-            let clean = solid.inverted.is_empty() && midair_swept::touches(&solid.mesh).0 == 0;
+            let clean = solid.inverted.is_empty()
+                && solid.crossed.is_none()
+                && midair_swept::touches(&solid.mesh).0 == 0;
             let (mesh, uv) = (solid.mesh, solid.uv);
             clean.then_some(Surface { mesh, uv })
         }

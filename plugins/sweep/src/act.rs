@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use midair_curve::End;
 use midair_document::{Link, ObjectId};
 use midair_studio::{
+    evaluate::Evaluations,
     hands::{Action, Cross, Hand, Hands, Haptic, Side},
     hold::Reserved,
     notice::Notices,
@@ -366,7 +367,7 @@ pub(crate) fn commit(
     mut hands: ResMut<Hands>,
     mut project: ResMut<Project>,
     mut selection: ResMut<Selection>,
-    shelf: Res<Shelf>,
+    (shelf, evaluations): (Res<Shelf>, Res<Evaluations>),
     mut looks: ResMut<write::Looks>,
     mut notices: ResMut<Notices>,
 ) {
@@ -396,7 +397,15 @@ pub(crate) fn commit(
     let links = links
         .filter(|l| project.document().object(l.source).is_some())
         .collect();
-    let made = write::make(&ribs, onto, links, &settings.sweep, &project, &shelf);
+    let made = write::make(
+        &ribs,
+        onto,
+        links,
+        &settings.sweep,
+        &project,
+        &shelf,
+        &evaluations,
+    );
     let done = match made {
         Ok(made) => {
             let sweep = made.sweep.clone();

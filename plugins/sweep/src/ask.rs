@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_curve::Polyline;
-use midair_document::{Edit, Object, ObjectId};
+use midair_document::{Object, ObjectId};
 use midair_field::Sweep;
 use midair_studio::{
     command::Command,
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::act::target;
 use crate::phase::{Draft, Phase};
-use crate::{SWEEP, edit};
+use crate::{SWEEP, edit, free};
 
 /// One thing that only Sweep understands, written as RON in [`Command::Tool`]. What is about a sweep
 /// is about the selected one.
@@ -49,8 +49,10 @@ pub enum SweepAsk {
         /// Whether it stays.
         on: bool,
     },
-    /// The sweep follows no stroke any more.
+    /// The sweep or the row of clones follows no stroke any more.
     Free,
+    /// The row of clones becomes so many objects, each on its own.
+    Apart,
     /// w₀ and w₁.
     Slopes(f32, f32),
 }
@@ -79,7 +81,7 @@ pub(crate) fn stroke(object: &Object) -> Option<Polyline> {
 
 pub(crate) fn ask(
     mut commands: MessageReader<Command>,
-    selection: Res<Selection>,
+    mut selection: ResMut<Selection>,
     mut project: ResMut<Project>,
     mut draft: ResMut<Draft>,
     mut notices: ResMut<Notices>,
@@ -98,6 +100,7 @@ pub(crate) fn ask(
             _ => continue,
         };
         match ron::from_str::<SweepAsk>(ask) {
+            Ok(SweepAsk::Apart) => free::apart(&mut project, &mut selection, &mut notices),
             Ok(ask) => carry_out(ask, &selection, &mut project, &mut draft, &mut notices),
             Err(_) => notices.warn(format!("Sweep does not understand \"{ask}\".")),
         }
@@ -145,17 +148,16 @@ fn carry_out(
             draft.slopes = [fit(w0), fit(w1)];
             return;
         }
+        SweepAsk::Free => {
+            free::free(project, selection, notices);
+            return;
+        }
         _ => {}
     }
     let Some(id) = target(project, selection) else {
         notices.info("Select a sweep first.");
         return;
     };
-    if ask == SweepAsk::Free {
-        let links = Vec::new();
-        project.commit("Follow no stroke", [Edit::SetLinks { id, links }], notices);
-        return;
-    }
     let Some((sweep, _)) = edit::curves(project, id) else {
         return;
     };
@@ -193,9 +195,11 @@ fn carry_out(
         ),
         SweepAsk::Thickness(thickness) => ("Thickness of", Sweep { thickness, ..sweep }),
         SweepAsk::Caps(caps) => ("Caps of", Sweep { caps, ..sweep }),
-        SweepAsk::Rail { .. } | SweepAsk::Pin { .. } | SweepAsk::Slopes(..) | SweepAsk::Free => {
-            return;
-        }
+        SweepAsk::Rail { .. }
+        | SweepAsk::Pin { .. }
+        | SweepAsk::Slopes(..)
+        | SweepAsk::Free
+        | SweepAsk::Apart => return,
     };
     edit::replace(project, notices, id, step, next);
 }

@@ -74,7 +74,6 @@ pub(crate) fn draw(
             return;
         }
     };
-    row.said = None;
     let step = project.document().step();
     let key = Key::new(&recipe, step);
     if row.mesh.as_ref().is_none_or(|(k, _)| *k != key) {
@@ -82,6 +81,14 @@ pub(crate) fn draw(
             return;
         };
         row.clear(&mut commands);
+        if made.mesh.triangles.is_empty() {
+            if row.said.as_deref() != Some(write::EMPTY) {
+                notices.info(write::EMPTY);
+                row.said = Some(write::EMPTY.to_owned());
+            }
+            return;
+        }
+        row.said = None;
         row.mesh = Some((key, drawn.handle(key, &made, &mut meshes)));
     }
     let Some((_, mesh)) = row.mesh.clone() else {

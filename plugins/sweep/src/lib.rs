@@ -13,6 +13,7 @@ mod cue;
 mod edit;
 mod ends;
 mod follow;
+mod free;
 mod panel;
 mod phase;
 mod solo;

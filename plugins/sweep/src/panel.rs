@@ -1,11 +1,12 @@
 //! What sweeps become, and what can be done with the selected one.
 
 use bevy::prelude::World;
+use midair_document::Object;
 use midair_studio::{
     command::Command,
     panel::{
         Panel,
-        egui::{ComboBox, Slider, Ui},
+        egui::{Button, ComboBox, Slider, Ui},
         kit,
     },
     project::{Project, Selection, Shelf},
@@ -15,6 +16,7 @@ use midair_swept::Profile;
 
 use crate::act::target;
 use crate::ask::SweepAsk;
+use crate::free;
 use crate::phase::{Draft, Phase};
 
 /// The number that is being dragged, until it is let go.
@@ -99,7 +101,24 @@ impl SweepPanel {
     fn selected(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         let project = world.resource::<Project>();
         let draft = world.resource::<Draft>();
-        let found = target(project, world.resource::<Selection>());
+        let selection = world.resource::<Selection>();
+        let found = target(project, selection);
+        let clones = selection.0.iter().find_map(|&id| {
+            let object = project.document().object(id)?;
+            Some((object, free::row(object)?.0.len()))
+        });
+        if let (None, Some((object, count))) = (found, clones) {
+            ui.label(kit::strong(&object.name));
+            ui.weak(format!("{count} clones"));
+            follows(ui, project, object, asks);
+            let few = count <= free::MOST;
+            let does = "Each becomes an object on its own";
+            let button = ui.add_enabled(few, Button::new("Take it apart"));
+            if button.on_hover_text(does).clicked() {
+                asks.push(SweepAsk::Apart.command());
+            }
+            return;
+        }
         let Some(object) = found.and_then(|id| project.document().object(id)) else {
             kit::empty(ui, "Select a sweep to change it.");
             return;
@@ -107,17 +126,7 @@ impl SweepPanel {
         let Some(sweep) = object.sweep() else { return };
         ui.label(kit::strong(&object.name));
         ui.weak(format!("{} curves", sweep.ribs.len()));
-        if !object.links.is_empty() {
-            let names = object.links.iter();
-            let names = names.filter_map(|l| Some(&*project.document().object(l.source)?.name));
-            let names: Vec<_> = names.collect();
-            ui.horizontal_wrapped(|ui| {
-                ui.label(format!("Follows {}", names.join(" and ")));
-                if ui.button("Free it").clicked() {
-                    asks.push(SweepAsk::Free.command());
-                }
-            });
-        }
+        follows(ui, project, object, asks);
         let mut count = sweep.count;
         if self.number(ui, "Points of it", &mut count, 2.0..=256.0, 0) && count != sweep.count {
             asks.push(SweepAsk::Count(count).command());
@@ -205,6 +214,22 @@ fn changes(before: &SweepSettings, now: &SweepSettings, asks: &mut Vec<Command>)
         shape, count, thickness, caps, hands, springy, smooth, item, clones, clone_size, paced,
         spread
     );
+}
+
+/// What it follows, and the way to end that.
+fn follows(ui: &mut Ui, project: &Project, object: &Object, asks: &mut Vec<Command>) {
+    if object.links.is_empty() {
+        return;
+    }
+    let names = object.links.iter();
+    let names = names.filter_map(|l| Some(&*project.document().object(l.source)?.name));
+    let names: Vec<_> = names.collect();
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!("Follows {}", names.join(" and ")));
+        if ui.button("Free it").clicked() {
+            asks.push(SweepAsk::Free.command());
+        }
+    });
 }
 
 #[cfg(test)]

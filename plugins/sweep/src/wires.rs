@@ -34,6 +34,8 @@ pub struct Wires {
     seam: Option<Rib>,
     bytes: usize,
     bent: bool,
+    /// The curves of the last piece and their points: only the one that the hands hold is new in a frame.
+    known: (Vec<Rib>, Vec<Vec3>),
 }
 
 impl Wires {
@@ -59,6 +61,25 @@ impl Wires {
         self.seam = None;
         self.bytes = 0;
         self.bent = false;
+        self.known = (Vec::new(), Vec::new());
+    }
+
+    /// The net of the last piece's curves and the one that is held.
+    fn last(&mut self, ribs: &[Rib], live: Option<&Rib>, closed: bool, count: usize) -> Net {
+        let (known, points) = &mut self.known;
+        if !ribs.starts_with(known) {
+            (known.clear(), points.clear());
+        }
+        for rib in &ribs[known.len()..] {
+            Net::row_into(rib, closed, count, points);
+        }
+        known.extend_from_slice(&ribs[known.len()..]);
+        let mut points = points.clone();
+        if let Some(live) = live {
+            Net::row_into(live, closed, count, &mut points);
+        }
+        let rows = ribs.len() + usize::from(live.is_some());
+        Net::through(points, rows, closed)
     }
 }
 
@@ -81,7 +102,8 @@ pub(crate) fn draw(
         // All of it moves at once: one mesh, of every curve that does.
         if let Some((sweep, placement)) = edit::curves(&project, *object) {
             let closed = sweep.profile == midair_swept::Profile::Tube;
-            let (mesh, bytes) = net(&grip.bent, closed, sweep.count.min(32) as usize);
+            let net = Net::new(&grip.bent, closed, sweep.count.min(32) as usize);
+            let (mesh, bytes) = drawn(net);
             wires.bytes = bytes;
             wires.bent = true;
             let at = transform(&placement);
@@ -112,7 +134,8 @@ pub(crate) fn draw(
         let from = wires.sent.saturating_sub(1);
         wires.sent += PIECE;
         wires.seam = draft.ribs.get(wires.sent - 1).copied();
-        let (mesh, bytes) = net(&draft.ribs[from..wires.sent], closed, count as usize);
+        let net = Net::new(&draft.ribs[from..wires.sent], closed, count as usize);
+        let (mesh, bytes) = drawn(net);
         wires.bytes += bytes;
         let look = MeshMaterial3d(material(&mut wires.material, &mut materials));
         let mesh = Mesh3d(meshes.add(mesh));
@@ -125,9 +148,9 @@ pub(crate) fn draw(
         ));
         wires.pieces.push(piece.id());
     }
-    let mut last: Vec<Rib> = draft.ribs[wires.sent.saturating_sub(1)..].to_vec();
-    last.extend(draft.live);
-    let (mesh, bytes) = net(&last, closed, count as usize);
+    let ribs = &draft.ribs[wires.sent.saturating_sub(1)..];
+    let net = wires.last(ribs, draft.live.as_ref(), closed, count as usize);
+    let (mesh, bytes) = drawn(net);
     wires.bytes += bytes;
     tail(
         wires,
@@ -177,8 +200,7 @@ fn material(
 }
 
 /// Handed over to be drawn.
-fn net(ribs: &[Rib], closed: bool, count: usize) -> (Mesh, usize) {
-    let net = Net::new(ribs, closed, count);
+fn drawn(net: Net) -> (Mesh, usize) {
     let bytes = net.bytes();
     let mesh = Mesh::new(
         PrimitiveTopology::LineList,

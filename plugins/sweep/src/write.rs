@@ -5,6 +5,7 @@ use bevy::tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use midair_document::{Edit, Kind, Link, Object, ObjectId};
 use midair_field::{Node, Placement, Recipe};
 use midair_studio::{
+    evaluate::{Evaluations, Key},
     notice::Notices,
     project::{Project, Shelf},
     settings::{SweepItem, SweepSettings, SweepShape},
@@ -23,6 +24,9 @@ pub(crate) struct Made {
     pub sweep: Option<Sweep>,
 }
 
+/// What is said of a clone that is nothing.
+pub(crate) const EMPTY: &str = "What is to be cloned is empty. Choose something else in the panel.";
+
 /// Surfaces are checked for lying flat with so many points only: enough for that.
 const FEW: usize = 24;
 
@@ -37,6 +41,7 @@ pub(crate) fn make(
     settings: &SweepSettings,
     project: &Project,
     shelf: &Shelf,
+    evaluations: &Evaluations,
 ) -> Result<Made, String> {
     let document = project.document();
     if let Some(id) = onto
@@ -58,7 +63,7 @@ pub(crate) fn make(
     }
     let id = ObjectId(document.next_id());
     let (name, object, sweep) = if settings.shape == SweepShape::Clones {
-        let (recipe, at) = row(ribs, settings, project, shelf)?;
+        let (recipe, at) = row(ribs, settings, project, shelf, evaluations)?;
         let object = Object::solid(format!("Clones {}", id.0), recipe);
         (
             format!("Clones {}", id.0),
@@ -123,6 +128,9 @@ pub(crate) fn said(error: &SweepError) -> String {
 /// One line saying why it is neither.
 pub(crate) fn kind_of(sweep: &Sweep) -> Result<Kind, String> {
     sweep.validate().map_err(|e| said(&e))?;
+    if sweep.ribs.iter().all(Rib::is_point) {
+        return Err(said(&SweepError::OnePoint));
+    }
     let every = sweep.ribs.len().div_ceil(FEW).max(1);
     let mut few: Vec<Rib> = sweep.ribs.iter().step_by(every).copied().collect();
     few.extend(sweep.ribs.last());
@@ -180,8 +188,14 @@ fn row(
     settings: &SweepSettings,
     project: &Project,
     shelf: &Shelf,
+    evaluations: &Evaluations,
 ) -> Result<(Recipe, Vec3), String> {
     let (item, longest) = item(settings, project, shelf)?;
+    // The curve that hung there had it made.
+    let made = evaluations.made(&Key::new(&item, project.document().step()));
+    if made.is_some_and(|m| m.mesh.triangles.is_empty()) {
+        return Err(EMPTY.to_owned());
+    }
     let ribs: Vec<Rib> = if settings.spread {
         thinned(ribs, settings.clones)
     } else {
@@ -257,7 +271,7 @@ pub(crate) fn item(
     if longest > 0.0 && longest.is_finite() {
         Ok((recipe, longest))
     } else {
-        Err("What is to be cloned is empty. Choose something else in the panel.".to_owned())
+        Err(EMPTY.to_owned())
     }
 }
 
@@ -282,6 +296,12 @@ impl Looks {
 
 fn touching(name: &str, sweep: &Sweep) -> Option<String> {
     let solid = sweep.solid().ok()?;
+    if let Some(at) = solid.crossed {
+        return Some(format!(
+            "The profile of {name} crosses itself at {:.2}, {:.2}, {:.2} m of its own: all its loops count as inside.",
+            at.x, at.y, at.z
+        ));
+    }
     if solid.mesh.triangles.len() > MOST {
         return None;
     }

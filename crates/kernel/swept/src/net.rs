@@ -18,18 +18,29 @@ const ALONG: usize = 4;
 impl Net {
     /// The net of `ribs` with `count` points along each; `closed` ones are a tube's.
     pub fn new(ribs: &[Rib], closed: bool, count: usize) -> Self {
-        let count = count.max(2);
         let mut points = Vec::new();
         for rib in ribs {
-            if closed {
-                rib.ring_into(count, &mut points);
-            } else {
-                rib.points_into(count, &mut points);
-            }
+            Self::row_into(rib, closed, count, &mut points);
         }
-        let columns = (points.len() / ribs.len().max(1)).max(1);
+        Self::through(points, ribs.len(), closed)
+    }
+
+    /// The points of one rib in a net.
+    pub fn row_into(rib: &Rib, closed: bool, count: usize, points: &mut Vec<Vec3>) {
+        let count = count.max(2);
+        if closed {
+            rib.ring_into(count, points);
+        } else {
+            rib.points_into(count, points);
+        }
+    }
+
+    /// The net through points that are known already, those of one rib after those of another: what
+    /// was swept a frame ago need not be measured again.
+    pub fn through(points: Vec<Vec3>, ribs: usize, closed: bool) -> Self {
+        let columns = (points.len() / ribs.max(1)).max(1);
         let mut lines = Vec::with_capacity(2 * points.len() + points.len() / 2);
-        for j in 0..ribs.len() {
+        for j in 0..ribs {
             let at = |i: usize| (j * columns + i % columns) as u32;
             let last = if closed { columns } else { columns - 1 };
             (0..last).for_each(|i| lines.extend([at(i), at(i + 1)]));

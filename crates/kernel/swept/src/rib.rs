@@ -139,6 +139,13 @@ impl Rib {
             && self.twist.is_finite()
     }
 
+    /// Whether both ends are at one point, and the curve no more than the shortest tangents that hands
+    /// there have (a millimetre).
+    pub fn is_point(&self) -> bool {
+        self.points[0].distance(self.points[1]) < 1.0e-4
+            && self.tangents.iter().all(|m| m.length() < 1.1e-3)
+    }
+
     /// Moved by `by`.
     #[must_use]
     pub fn shifted(self, by: Vec3) -> Self {

@@ -14,6 +14,9 @@ pub struct Solid {
     /// Where the thickness had to be taken back since the surface bends more sharply than that, and
     /// where that was not enough: its faces there look the wrong way.
     pub inverted: Vec<Vec3>,
+    /// Where the profile of a full tube crosses itself, as a figure of eight does: one of its loops runs
+    /// the other way round than the other, and both are inside.
+    pub crossed: Option<Vec3>,
 }
 
 /// Rounds in which a thickness is taken back where it is too much.
@@ -36,7 +39,13 @@ impl Sweep {
         let points = self.points();
         let mut skin = self.skin(&points);
         let mut uv = self.uv(&points, &skin);
-        let (mesh, inverted) = if self.profile == Profile::Tube && self.caps {
+        let full = self.profile == Profile::Tube && self.caps;
+        let (bulk, crossed) = if full {
+            self.bulk(&points)
+        } else {
+            (0.0, None)
+        };
+        let (mesh, inverted) = if full {
             self.cap(&mut skin);
             skin.split(&mut uv);
             if skin.volume() < 0.0 {
@@ -49,12 +58,63 @@ impl Sweep {
             uv.extend_from_within(..);
             thickened(&skin, self.thickness)
         };
-        // What is flatter than a hair over its whole area is no solid.
-        let (volume, area) = (mesh.volume(), mesh.area());
+        // What is flatter than a hair over its whole area is no solid. Loops that run the other way
+        // round count as well.
+        let (volume, area) = (mesh.volume().max(bulk), mesh.area());
         if mesh.triangles.is_empty() || volume <= 1.0e-7 * area {
             return Err(SweepError::Flat);
         }
-        Ok(Solid { mesh, uv, inverted })
+        Ok(Solid {
+            mesh,
+            uv,
+            inverted,
+            crossed,
+        })
+    }
+
+    /// The volume of a full tube whichever way round its profile runs, and where it changes that: the
+    /// sum over what lies between four points of one rib, two and two opposite, and those of the next.
+    pub(crate) fn bulk(&self, points: &[Vec3]) -> (f64, Option<Vec3>) {
+        let columns = self.columns();
+        let strips = columns / 2;
+        let mut cells = Vec::with_capacity(points.len() / 2);
+        for pair in points.windows(2 * columns).step_by(columns) {
+            let (here, next) = pair.split_at(columns);
+            for i in 0..strips {
+                let corners = [i, i + 1, columns - i - 1, (columns - i) % columns];
+                let [a, b, c, d] = corners.map(|k| here[k].as_dvec3());
+                let [e, f, g, h] = corners.map(|k| next[k].as_dvec3());
+                // Six tetrahedra around the diagonal from a to g.
+                let around = [[b, c], [c, d], [d, h], [h, e], [e, f], [f, b]];
+                let six: f64 = around
+                    .iter()
+                    .map(|[p, q]| (p - a).cross(q - a).dot(g - a))
+                    .sum();
+                cells.push((six / 6.0, (a + b + c + d) * 0.25));
+            }
+        }
+        let (mut ahead, mut back) = (0.0, 0.0);
+        for &(volume, _) in &cells {
+            *(if volume > 0.0 { &mut ahead } else { &mut back }) += volume.abs();
+        }
+        let bulk = ahead + back;
+        // Less than this part of it is the rounding of a bend.
+        let both_ways = ahead.min(back) > 1.0e-3 * bulk;
+        let largest = cells.iter().fold(0.0f64, |m, c| m.max(c.0.abs()));
+        let place = cells.chunks(strips).find_map(|row| {
+            // Where the curves meet the cells have next to nothing in them.
+            let mut full = row.iter().filter(|c| c.0.abs() > 1.0e-4 * largest);
+            let mut before = full.next()?;
+            let after = full.find(|c| {
+                let turned = c.0 * before.0 < 0.0;
+                if !turned {
+                    before = c;
+                }
+                turned
+            })?;
+            Some(before.1.midpoint(after.1).as_vec3())
+        });
+        (bulk, place.filter(|_| both_ways))
     }
 
     /// Strips from each point of the first and the last rib to its opposite.

@@ -67,6 +67,9 @@ pub enum SweepError {
     /// Everything lies in one line, or the tube in one plane.
     #[error("it encloses nothing; bend the curve, or move it another way than along itself")]
     Flat,
+    /// Both ends of every curve are in one place.
+    #[error("both ends of the curve are at one point; move the hands apart")]
+    OnePoint,
     /// No place for a clone.
     #[error("a row of clones needs a curve and at least one clone")]
     NoClones,

@@ -230,6 +230,82 @@ fn a_surface_has_its_place_on_a_picture() {
     assert!(surface.uv.iter().all(|uv| (0.0..=1.0).contains(&uv.x)));
 }
 
+/// Hands tilted the same way: the curve is an S, and the one that closes it crosses it in the middle.
+fn eight(by: f64) -> Sweep {
+    let ribs = (0..=20).map(|j| {
+        let at = |x: f64, turn: f64| End {
+            position: DVec3::new(x, 0.0, f64::from(j) * 0.01),
+            rotation: DQuat::from_rotation_z(turn),
+        };
+        let (left, right) = (at(-0.1, 1.0), at(0.1, by));
+        let mut lengths = Lengths::default();
+        lengths.settle(&left, &right);
+        Rib::held(&left, &right, lengths, [1.0; 2], 0.0)
+    });
+    Sweep {
+        ribs: ribs.collect(),
+        count: 48,
+        profile: Profile::Tube,
+        thickness: 0.0,
+        caps: true,
+    }
+}
+
+/// The area that a curve and the one that closes it have between them, loop by loop: the curve's height
+/// over its chord is half of how far the two are apart.
+fn loops(rib: &Rib) -> f64 {
+    let curve = rib.curve();
+    let side = |u: f64| {
+        let (s, back) = (curve.at(u), curve.closing().at(u));
+        (s, back)
+    };
+    let steps = 20_000;
+    let strip = |i: usize| {
+        let (a, d) = side(i as f64 / f64::from(steps));
+        let (b, c) = side((i + 1) as f64 / f64::from(steps));
+        let half = |p: DVec3, q: DVec3, r: DVec3| 0.5 * (q - p).cross(r - p).z;
+        (half(a, b, c) + half(a, c, d)).abs()
+    };
+    (0..steps as usize).map(strip).sum()
+}
+
+#[test]
+fn a_figure_of_eight_is_full_in_both_loops_and_says_where_it_crosses() {
+    for by in [1.0, 0.6] {
+        let sweep = eight(by);
+        let solid = sweep.solid().unwrap();
+        let report = check(&solid.mesh);
+        assert!(
+            report.watertight && report.edge_manifold && report.consistently_wound,
+            "{:?}",
+            report.faults()
+        );
+        let at = solid.crossed.expect("it crosses itself");
+        assert!(at.length() < 0.05 && at.z.abs() < 0.02, "{at}");
+        let (bulk, _) = sweep.bulk(&sweep.points());
+        let wanted = loops(&sweep.ribs[0]) * 0.2;
+        assert!((bulk - wanted).abs() < 0.04 * wanted, "{bulk} of {wanted}");
+        assert!(
+            solid.mesh.volume() < 0.95 * bulk,
+            "the loops run against each other"
+        );
+    }
+    // Hands tilted against each other make one loop.
+    let one = eight(-0.9).solid().unwrap();
+    assert_eq!(one.crossed, None);
+    // Swept along its own plane it still encloses nothing.
+    let flat = eight(1.0);
+    let ribs = flat
+        .ribs
+        .iter()
+        .map(|r| r.shifted(Vec3::new(0.0, r.points[0].z, -r.points[0].z)));
+    let flat = Sweep {
+        ribs: ribs.collect(),
+        ..flat
+    };
+    assert_eq!(flat.solid().unwrap_err(), SweepError::Flat);
+}
+
 #[test]
 fn a_pinned_end_is_the_middle_of_a_fan() {
     for (profile, thickness, caps) in [
@@ -330,6 +406,57 @@ fn a_million_clones_are_refused() {
 }
 
 #[test]
+fn tangents_without_a_length_leave_a_straight_curve() {
+    let ribs = (0..=10).map(|j| Rib {
+        points: [
+            Vec3::new(-0.1, 0.0, 0.01 * j as f32),
+            Vec3::new(0.1, 0.0, 0.01 * j as f32),
+        ],
+        tangents: [Vec3::ZERO; 2],
+        slopes: [1.0; 2],
+        start: glam::Quat::IDENTITY,
+        twist: 0.0,
+    });
+    let plate = Sweep {
+        ribs: ribs.collect(),
+        count: 24,
+        profile: Profile::Sheet,
+        thickness: 0.01,
+        caps: false,
+    };
+    let report = check(&plate.solid().unwrap().mesh);
+    assert!(report.is_faultless(), "{:?}", report.faults());
+    assert!(
+        (report.volume - 0.2 * 0.1 * 0.01).abs() < 1e-7,
+        "{}",
+        report.volume
+    );
+    let tube = Sweep {
+        profile: Profile::Tube,
+        caps: true,
+        thickness: 0.0,
+        ..plate.clone()
+    };
+    assert_eq!(
+        tube.solid().unwrap_err(),
+        SweepError::Flat,
+        "a curve and itself"
+    );
+    let row = Row {
+        ribs: plate.ribs,
+        count: 5,
+        size: 1.0,
+        paced: true,
+    };
+    let places = row.places();
+    assert!(
+        places
+            .iter()
+            .all(|p| p.translation.is_finite() && p.rotation.is_normalized())
+    );
+}
+
+#[test]
 fn hands_are_found_again_in_a_rib() {
     let (left, right) = (
         end(DVec3::new(-0.2, 1.0, 0.1), DQuat::from_rotation_y(0.4)),
@@ -351,5 +478,18 @@ fn hands_are_found_again_in_a_rib() {
     for (is, was) in [(rib.left(), left), (rib.right(), right)] {
         assert!(is.position.distance(was.position) < 1e-6);
         assert!(is.rotation.angle_between(was.rotation) < 1e-5);
+    }
+}
+
+#[test]
+fn a_net_through_known_points_is_the_net() {
+    let ribs = wall(24, Profile::Sheet).ribs;
+    for closed in [false, true] {
+        let mut points = Vec::new();
+        for rib in ribs.iter() {
+            crate::Net::row_into(rib, closed, 12, &mut points);
+        }
+        let whole = crate::Net::new(&ribs, closed, 12);
+        assert_eq!(crate::Net::through(points, ribs.len(), closed), whole);
     }
 }
