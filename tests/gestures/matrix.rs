@@ -7,8 +7,8 @@ use std::f32::consts::TAU;
 use bevy::prelude::*;
 use midair_brush::{BRUSH, canvas};
 use midair_csg::ASSEMBLE;
-use midair_document::{Document, ObjectId};
-use midair_field::{Node, Op};
+use midair_document::{Document, Object, ObjectId};
+use midair_field::{Node, Op, Skeleton};
 use midair_mesh::check;
 use midair_scaffold::SCAFFOLD;
 use midair_studio::command::Command;
@@ -18,14 +18,14 @@ use midair_studio::settings::{Draws, Settings, SweepHands, SweepItem, SweepShape
 use midair_studio::tools::ToolId;
 use midair_sweep::{Phase, SWEEP};
 
-use crate::studio::Studio;
+use crate::studio::{Studio, near};
 use crate::sweep::{LEFT, RIGHT};
 
 const R: Side = Side::Right;
 /// Where nothing is.
-const AWAY: Vec3 = Vec3::new(0.0, 4.0, 0.0);
+pub const AWAY: Vec3 = Vec3::new(0.0, 4.0, 0.0);
 /// Where things of other modes are made beside the source.
-const BESIDE: Vec3 = Vec3::new(0.9, 1.0, 0.0);
+pub const BESIDE: Vec3 = Vec3::new(0.9, 1.0, 0.0);
 
 /// What a mode makes, as far as the others tell it apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,13 +114,13 @@ const SOURCES: [Source; 13] = [
 
 impl Studio {
     /// The mode in hand, the hands away from everything.
-    fn mode(&mut self, id: ToolId) {
+    pub fn mode(&mut self, id: ToolId) {
         self.ask(Command::Mode(id));
         self.reach(R, AWAY);
     }
 
     /// Taken in hand where it is.
-    fn take(&mut self, id: ObjectId, at: Vec3) {
+    pub fn take(&mut self, id: ObjectId, at: Vec3) {
         self.reach(R, at);
         assert_eq!(
             self.touched(R),
@@ -152,18 +152,18 @@ impl Studio {
         self.settle();
     }
 
-    fn dab(&mut self, at: Vec3) {
+    pub fn dab(&mut self, at: Vec3) {
         self.reach(R, at);
         self.click(R, Action::Act);
         self.settle();
     }
 
-    fn newest(&self) -> ObjectId {
+    pub fn newest(&self) -> ObjectId {
         self.document().objects().next_back().expect("something").0
     }
 
     /// Written by itself, as a file that has no fault.
-    fn written(&mut self, id: ObjectId) {
+    pub fn written(&mut self, id: ObjectId) {
         let path = self.home.path().join("one.stl");
         let before = self.warnings().len();
         self.ask(Command::Export {
@@ -202,7 +202,7 @@ impl Studio {
     }
 }
 
-fn component(s: &mut Studio) -> (ObjectId, Vec3) {
+pub fn component(s: &mut Studio) -> (ObjectId, Vec3) {
     s.mode(ASSEMBLE);
     let at = Vec3::new(0.0, 1.0, 0.0);
     let id = s.place("solid/cube", at);
@@ -253,7 +253,7 @@ fn on(s: &Studio, id: ObjectId) -> Vec3 {
     there.transform_point3(points[points.len() / 3]).as_vec3()
 }
 
-fn ring(s: &mut Studio) -> (ObjectId, Vec3) {
+pub fn ring(s: &mut Studio) -> (ObjectId, Vec3) {
     draw(s, Draws::Stroke);
     let at = |t: f32| {
         let (y, x) = (t * TAU).sin_cos();
@@ -281,7 +281,7 @@ fn filled(s: &mut Studio) -> (ObjectId, Vec3) {
 fn bowed(s: &mut Studio, shape: SweepShape) -> ObjectId {
     s.sweeping(shape);
     s.both(LEFT, RIGHT, 0.7);
-    s.frames(30);
+    s.frames(12);
     let id = s.swipe_away(Vec3::Z * -0.3, 0.7);
     s.reach(R, AWAY);
     s.put(Side::Left, Pose::at(Vec3::new(-1.0, 3.0, 0.0)));
@@ -311,7 +311,7 @@ fn open_tube(s: &mut Studio) -> (ObjectId, Vec3) {
     (id, within(s, id))
 }
 
-fn plate(s: &mut Studio) -> (ObjectId, Vec3) {
+pub fn plate(s: &mut Studio) -> (ObjectId, Vec3) {
     s.set("thickness", 0.03);
     let id = bowed(s, SweepShape::Surface);
     (id, within(s, id))
@@ -346,7 +346,7 @@ fn brush(s: &mut Studio) {
     s.ask(Settings::command("brush.radius", 0.08));
 }
 
-fn painting(s: &mut Studio) -> (ObjectId, Vec3) {
+pub fn painting(s: &mut Studio) -> (ObjectId, Vec3) {
     brush(s);
     let at = Vec3::new(0.0, 1.0, 0.0);
     s.dab(at);
@@ -427,7 +427,7 @@ fn sweep_beside(s: &mut Studio) -> ObjectId {
         rotation: Quat::from_rotation_z(if x < 0.0 { 0.6 } else { -0.6 }),
     };
     s.carry(Some(level(-0.25)), Some(level(0.25)));
-    s.frames(30);
+    s.frames(12);
     s.swipe_away(Vec3::Z * -0.2, 0.6)
 }
 
@@ -483,7 +483,7 @@ fn cell(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3, to: &ToolId) {
             s.set("shape", SweepShape::Surface);
             s.set("thickness", 0.02);
             s.both(LEFT, RIGHT, 0.3);
-            s.frames(30);
+            s.frames(12);
             let made = s.swipe_away(Vec3::Z * -0.25, 0.3);
             let ends = s.swept(made).ribs.iter().map(|r| r.points[0]);
             let to_world = s.placement(made).affine();
@@ -546,6 +546,33 @@ fn cell(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3, to: &ToolId) {
     }
 }
 
+/// What follows a source that was moved by so much: a sweep's rail, a painting's skeleton. What is painted
+/// with a solid follows its shape, and that is as it was.
+fn followed(was: &Object, is: &Object, by: Vec3) {
+    if let (Some(was), Some(is)) = (canvas(was), canvas(is)) {
+        for (a, b) in is.strokes.iter().zip(&was.strokes) {
+            match (&a.skeleton, &b.skeleton) {
+                (Skeleton::Points(a), Skeleton::Points(b)) => {
+                    for (a, b) in a.iter().zip(b.iter()) {
+                        near(a.truncate(), b.truncate() + by, 1e-4);
+                    }
+                }
+                (Skeleton::Line(a, c), Skeleton::Line(b, d)) => {
+                    near(*a, *b + by, 1e-4);
+                    near(*c, *d + by, 1e-4);
+                }
+                _ => assert_eq!(a, b),
+            }
+        }
+        return;
+    }
+    let ribs = |o: &Object| o.sweep().expect("a sweep").ribs.clone();
+    for (a, b) in ribs(is).iter().zip(ribs(was).iter()) {
+        near(a.points[0], b.points[0] + by, 1e-4);
+        assert_eq!(a.points[1], b.points[1], "the other end stays");
+    }
+}
+
 /// The source is moved by hand, where it is still there; what follows it does so in the same step. Whether
 /// that was done.
 fn edited(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3) -> bool {
@@ -565,7 +592,7 @@ fn edited(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3) -> bool {
         rest.map(|(o, x)| (o, x.clone())).collect()
     };
     let (rest, steps) = (others(s.document()), s.undo_len());
-    let before: Vec<_> = follows.iter().map(|&o| s.swept(o).ribs.clone()).collect();
+    let before: Vec<_> = follows.iter().map(|&o| s.object(o).clone()).collect();
     s.reach(R, at);
     if s.touched(R) != Some(id) {
         // Something that was made of it is in front.
@@ -578,15 +605,8 @@ fn edited(s: &mut Studio, source: &Source, id: ObjectId, at: Vec3) -> bool {
         others(s.document()) == rest,
         "what holds it by value is as it was"
     );
-    for (&object, ribs) in follows.iter().zip(&before) {
-        let after = &s.swept(object).ribs;
-        for (a, b) in after.iter().zip(ribs.iter()) {
-            assert!(
-                (a.points[0] - b.points[0]).distance(by) < 1e-4,
-                "it follows its rail"
-            );
-            assert_eq!(a.points[1], b.points[1]);
-        }
+    for (&object, was) in follows.iter().zip(&before) {
+        followed(was, s.object(object), by);
         s.written(object);
     }
     true

@@ -343,7 +343,7 @@ fn a_grip_on_nothing_and_the_stick_turn_the_world_in_steps() {
 fn who_has_one_hand_finds_what_the_wrist_has_before_the_body() {
     let mut studio = worn();
     studio.input().side(Side::Left).pose = None;
-    studio.frames(200);
+    studio.pass(2.2);
     let board = boards(&studio).get(WRIST).unwrap();
     let eyes = studio.world().resource::<Stance>().head.position;
     assert!(board.shown);

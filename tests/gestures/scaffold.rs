@@ -233,7 +233,7 @@ fn a_ghost_is_picked_where_it_is_seen_whatever_is_drawn() {
     // Long after it is an ordinary place again.
     let place = last(&s).places[1].as_vec3();
     s.reach(R, v(1.0, 1.5, 0.5));
-    s.frames(90 * 7);
+    s.pass(7.0);
     s.reach(R, place);
     assert_eq!(s.world().resource::<Draft>().over, None);
 }
@@ -522,7 +522,7 @@ fn each_bad_input_has_a_clear_outcome() {
     s.click(R, Action::Act);
     assert!(s.document().is_empty() && s.said("That was a point"));
     // Hundreds of points at one spot.
-    s.frames(400);
+    s.pass(4.4);
     s.scribble(std::iter::repeat_n(v(0.0, 1.0, 0.0), 400));
     assert!(s.document().is_empty() && s.said("That was a point"));
     // The same with a stroke going out of it: the hand rests at both ends.

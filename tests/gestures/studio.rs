@@ -22,8 +22,12 @@ use midair_studio::tools::{AddTool, Tool, ToolId};
 /// A second mode that does nothing, to leave Assemble for.
 pub const ELSEWHERE: ToolId = ToolId::new("test/elsewhere");
 
-/// Frames at 90 Hz within which no two clicks are one double click.
-const APART: usize = 45;
+/// Seconds within which no two clicks are one double click.
+const APART: f32 = 0.45;
+/// A frame at 90 Hz.
+const FRAME: Duration = Duration::from_nanos(11_111_111);
+/// The longest frame that counts in full towards a hold.
+const LONG: Duration = Duration::from_nanos(33_333_333);
 
 /// What the devices say, written into the hands in every frame as a way in does.
 #[derive(Resource, Default)]
@@ -44,23 +48,21 @@ impl Studio {
     pub fn with(prepare: impl FnOnce(&mut App)) -> Self {
         let home = tempfile::tempdir().unwrap();
         let mut app = app(Stage::Bare, Places::below(home.path()), Begin::default());
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_nanos(
-            11_111_111,
-        )))
-        .add_tool(Tool {
-            id: ELSEWHERE,
-            name: "Elsewhere",
-            about: "Nothing",
-            order: 90,
-        })
-        .init_resource::<Device>()
-        .add_systems(
-            Update,
-            (|device: Res<Device>, mut input: ResMut<HandsInput>| {
-                input.set_if_neq(device.0);
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
+            .add_tool(Tool {
+                id: ELSEWHERE,
+                name: "Elsewhere",
+                about: "Nothing",
+                order: 90,
             })
-            .in_set(WriteHands),
-        );
+            .init_resource::<Device>()
+            .add_systems(
+                Update,
+                (|device: Res<Device>, mut input: ResMut<HandsInput>| {
+                    input.set_if_neq(device.0);
+                })
+                .in_set(WriteHands),
+            );
         prepare(&mut app);
         app.finish();
         app.cleanup();
@@ -162,6 +164,15 @@ impl Studio {
         }
     }
 
+    /// Time passes in long frames while the hands rest: what goes by seconds takes a third of the frames.
+    pub fn pass(&mut self, seconds: f32) {
+        let strategy = TimeUpdateStrategy::ManualDuration(LONG);
+        self.app.insert_resource(strategy);
+        self.frames((seconds / LONG.as_secs_f32()).ceil() as usize);
+        let strategy = TimeUpdateStrategy::ManualDuration(FRAME);
+        self.app.insert_resource(strategy);
+    }
+
     /// Frames until nothing is on its way, and what is there can be touched.
     pub fn settle(&mut self) {
         let since = Instant::now();
@@ -255,10 +266,10 @@ impl Studio {
     /// A click that is not half of a double click.
     pub fn click(&mut self, side: Side, action: Action) {
         self.press(side, action);
-        self.frames(8);
+        self.pass(0.09);
         self.let_go(side, action);
         if matches!(action, Action::Centre | Action::Menu) {
-            self.frames(APART);
+            self.pass(APART);
         }
     }
 
@@ -293,9 +304,9 @@ impl Studio {
     /// The middle of the pad, held; then the result is there.
     pub fn finish(&mut self) {
         self.press(Side::Right, Action::Centre);
-        self.frames(40);
+        self.pass(0.44);
         self.let_go(Side::Right, Action::Centre);
-        self.frames(APART);
+        self.pass(APART);
         self.settle();
     }
 

@@ -29,7 +29,7 @@ impl Studio {
         self.set("hands", SweepHands::Two);
         self.set("shape", shape);
         self.both(LEFT, RIGHT, 0.0);
-        self.frames(40);
+        self.frames(14);
     }
 
     /// Hands turned by `bend` against each other, so that the curve bows upwards.

@@ -66,7 +66,7 @@ impl Studio {
             self.let_go(Side::Right, Action::Centre);
             self.frames(4);
         }
-        self.frames(45);
+        self.pass(0.5);
     }
 
     /// What the step of that name says, by hands.

@@ -36,6 +36,8 @@ pub enum Ask {
         /// Whether this is what stays: otherwise it is only shown.
         done: bool,
     },
+    /// No stroke of the painting follows anything any more.
+    Free,
     /// Closes the polygon that is being drawn.
     Close,
 }

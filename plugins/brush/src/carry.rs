@@ -7,7 +7,7 @@ use midair_studio::{carry::Carried, settings::BrushSkeleton};
 use crate::{BRUSH, easel::canvas, paint_on, stroke, work::Studio};
 
 /// The points that a drawn line or stroke goes through, in the world.
-fn way(object: &Object) -> Option<Vec<Vec3>> {
+pub(crate) fn way(object: &Object) -> Option<Vec<Vec3>> {
     let points = match (object.line(), object.stroke()) {
         (Some(line), _) => vec![line.a, line.b],
         (None, Some(stroke)) => stroke.points(),
@@ -42,6 +42,7 @@ fn draw(studio: &mut Studio, objects: &[(ObjectId, Object)]) {
         match made {
             Ok(stroke) => {
                 work.strokes.push(stroke);
+                work.sources.push(Some(*id));
                 dimmed.push(Edit::SetDimmed {
                     id: *id,
                     dimmed: true,
@@ -76,7 +77,7 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
         draw(&mut studio, &objects);
         return;
     }
-    for (_, object) in objects {
+    for (id, object) in objects {
         let Some(recipe) = object.operand() else {
             studio.notices.warn(format!(
                 "{} is not closed, so it cannot be a brush: close it first, then carry it here again.",
@@ -100,6 +101,7 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
             object.name
         ));
         studio.easel.carried = Some((object.name, recipe));
+        studio.easel.source = Some(id);
         studio.easel.selected = None;
         studio.settings.brush.volume.clear();
         studio.settings.brush.skeleton = BrushSkeleton::Volume;

@@ -17,6 +17,8 @@ pub struct Easel {
     pub picking: bool,
     /// A solid that was carried in as a brush, and what it is called.
     pub carried: Option<(String, Recipe)>,
+    /// Which object that is: what is painted with it follows it.
+    pub source: Option<ObjectId>,
     /// How strokes blend while a slider is dragged: exponent and reach.
     pub mix: Option<(f32, f32)>,
 }
@@ -58,6 +60,13 @@ impl Easel {
             {
                 self.take(Some(id));
             }
+        }
+        // The brush in hand is what its source is now.
+        let source = self.source.and_then(|id| document.object(id));
+        if let (Some(object), Some((name, recipe))) = (source, &mut self.carried)
+            && let Some(now) = object.operand().filter(|now| now != recipe)
+        {
+            (*name, *recipe) = (object.name.clone(), now);
         }
         let count = self
             .painting(document)

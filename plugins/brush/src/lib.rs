@@ -9,6 +9,7 @@ mod ask;
 mod carry;
 mod cue;
 mod easel;
+mod follow;
 mod ghost;
 mod live;
 mod panel;
@@ -21,6 +22,7 @@ use bevy::prelude::*;
 use midair_studio::{
     StudioSet,
     evaluate::Deliver,
+    links::AddFollow,
     panel::{AddPanel, Dock, PanelInfo, icon},
     tools::{AddTool, Tool, ToolChanged, ToolId, tool_active},
 };
@@ -65,6 +67,7 @@ impl Plugin for BrushPlugin {
         .init_resource::<Sketchpad>()
         .init_resource::<Ghost>()
         .init_resource::<act::Holding>()
+        .add_follow(follow::follow)
         .add_observer(changed)
         .add_observer(carry::take)
         .add_systems(

@@ -180,6 +180,21 @@ fn on(
             asks.push(Ask::New.command());
         }
     });
+    let links = painting.and_then(|(id, _)| Some(&document.object(id)?.links));
+    if let Some(links) = links.filter(|l| !l.is_empty()) {
+        let mut names: Vec<&str> = links
+            .iter()
+            .filter_map(|l| Some(&*document.object(l.source)?.name))
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        ui.horizontal_wrapped(|ui| {
+            ui.label(format!("Follows {}", names.join(" and ")));
+            if ui.button("Free it").clicked() {
+                asks.push(Ask::Free.command());
+            }
+        });
+    }
     if let [id] = selection[..]
         && painting.is_none_or(|(p, _)| p != id)
         && let Some(object) = document.object(id)

@@ -154,6 +154,19 @@ fn carry_out(
             studio.easel.picking = false;
         }
         Ask::Mix { blend, reach, done } => mix(studio, blend, reach, done),
+        Ask::Free => {
+            let Some((id, ..)) = studio.easel.painting(studio.project.document()) else {
+                studio
+                    .notices
+                    .info("Take up a painting first, then free it.");
+                return;
+            };
+            let links = Vec::new();
+            let edit = Edit::SetLinks { id, links };
+            studio
+                .project
+                .commit("Follow nothing", [edit], &mut studio.notices);
+        }
         Ask::Close => {
             if let Some(side) = draft.busy()
                 && matches!(draft.phase(side), Phase::Polygon { .. })

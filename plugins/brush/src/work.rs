@@ -15,6 +15,7 @@ use midair_studio::{
 
 use crate::{
     easel::Easel,
+    follow,
     phase::{Draft, Phase},
     stroke::{self, Frame, StrokeFault},
 };
@@ -34,6 +35,8 @@ pub struct Work {
     pub gone: usize,
     /// What comes.
     pub strokes: Vec<Stroke>,
+    /// What each of those that come follows from now on; shorter where the last ones follow nothing.
+    pub sources: Vec<Option<ObjectId>>,
 }
 
 impl Work {
@@ -185,6 +188,9 @@ impl Studio<'_> {
         let images = images.map(|i| stroke::mirrored(&made, &work.placement, i));
         work.strokes = images.collect();
         work.strokes.insert(0, made);
+        if matches!(draft.phase(side), Phase::Stamping) && self.settings.brush.volume.is_empty() {
+            work.sources = vec![self.easel.source; work.strokes.len()];
+        }
         Ok(Some(work))
     }
 }
@@ -225,6 +231,7 @@ pub(crate) fn base(document: &Document, easel: &Easel, brush: &BrushSettings, fi
         canvas,
         gone: 0,
         strokes: Vec::new(),
+        sources: Vec::new(),
     }
 }
 
@@ -263,6 +270,7 @@ fn commit(
         }
     }
     tell_if_too_fine(&work, project.document(), notices);
+    let links = follow::links(work.at, &work.sources);
     match work.painting {
         Some(id) => {
             let edit = Edit::SetStrokes {
@@ -271,7 +279,14 @@ fn commit(
                 gone: work.gone,
                 strokes: work.strokes,
             };
-            project.commit(name, [edit].into_iter().chain(more), notices)
+            let linked = (!links.is_empty()).then(|| {
+                let own = project.document().object(id);
+                let own = own.map_or(Vec::new(), |o| o.links.clone());
+                let links = own.into_iter().chain(links).collect();
+                Edit::SetLinks { id, links }
+            });
+            let edits = [edit].into_iter().chain(linked).chain(more);
+            project.commit(name, edits, notices)
         }
         None => {
             let document = project.document();
@@ -283,6 +298,7 @@ fn commit(
             let title = format!("Painting {}", count + 1);
             let mut object = Object::solid(title, work.recipe()).placed(work.placement);
             object.material = (!material.is_empty()).then(|| material.to_owned());
+            object.links = links;
             let add = Edit::Add {
                 id,
                 object: Arc::new(object),

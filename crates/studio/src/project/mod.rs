@@ -75,6 +75,9 @@ impl Places {
     }
 }
 
+/// So many links one after the other are followed.
+const LONGEST_CHAIN: usize = 8;
+
 /// How many there have been in this run.
 static PROJECTS: AtomicU64 = AtomicU64::new(0);
 
@@ -171,13 +174,18 @@ impl Project {
 
     /// A step, and in it what follows from it.
     fn step_with_links(&mut self, name: String, edits: Vec<Edit>) -> Result<(), EditError> {
-        let was = self.document().clone();
+        let mut was = self.document().clone();
         // Cannot fail: none is open.
         let _ = self.history.begin(name);
         let mut made = edits.into_iter().try_for_each(|e| self.history.apply(e));
-        if made.is_ok() {
+        // What follows may be followed: a stroke by the sweep along it, that by what is painted with it.
+        for _ in 0..LONGEST_CHAIN {
             let now = self.document();
             let more: Vec<Edit> = self.follows.iter().flat_map(|f| f(&was, now)).collect();
+            if made.is_err() || more.is_empty() {
+                break;
+            }
+            was = self.document().clone();
             made = more.into_iter().try_for_each(|e| self.history.apply(e));
         }
         match made {
