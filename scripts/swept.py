@@ -135,6 +135,8 @@ def figure_1():
 
 def figure_10():
     s = Session("figure-10", "Closed curves", "Closed curves as in Fig. 10, two of which cross themselves: each is swept a little and closed by its caps.")
+    s.note("What crosses itself is drawn from its field: finely.")
+    s.say("Ask(Step(0.002)),")
     s.shape("Tube")
     s.set("count", "96")
     # Where it stands, how the hands are rolled.

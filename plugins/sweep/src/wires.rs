@@ -68,7 +68,8 @@ impl Wires {
     fn last(&mut self, ribs: &[Rib], live: Option<&Rib>, closed: bool, count: usize) -> Net {
         let (known, points) = &mut self.known;
         if !ribs.starts_with(known) {
-            (known.clear(), points.clear());
+            known.clear();
+            points.clear();
         }
         for rib in &ribs[known.len()..] {
             Net::row_into(rib, closed, count, points);
