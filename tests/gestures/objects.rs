@@ -3,9 +3,11 @@
 use bevy::prelude::*;
 use midair_document::{Colour, Document, Kind, LayerId, ObjectId};
 use midair_studio::command::Command;
+use midair_studio::evaluate::Delivery;
 use midair_studio::hands::{Action, Side};
 use midair_studio::objects::{Ask, Axis, How};
 use midair_studio::project::Selection;
+use midair_studio::show::{Arriving, ObjectMap};
 
 use crate::studio::{Studio, near};
 
@@ -234,4 +236,63 @@ fn what_cannot_be_done_changes_nothing_and_says_why() {
         s.ask(Command::Objects(ask));
         assert_eq!(*s.document(), before);
     }
+}
+
+#[test]
+fn many_that_arrive_at_once_come_a_few_in_a_frame_and_in_order() {
+    let mut s = Studio::new();
+    // A row as long as it may be, and the same again.
+    let first = s.place("solid/cube", Vec3::new(0.6, 0.5, 0.0));
+    select(&mut s, &[first]);
+    s.ask(Command::Objects(Ask::Around { count: 64 }));
+    s.settle();
+    s.ask(Command::Objects(Ask::Duplicate));
+    s.settle();
+    let there = |s: &Studio| {
+        let map = s.world().resource::<ObjectMap>();
+        let ids = s.document().objects().map(|(id, _)| id);
+        ids.map(|id| {
+            let entity = map.get(id)?;
+            Some(s.world().get::<Mesh3d>(entity).is_some())
+        })
+        .collect::<Vec<_>>()
+    };
+    let all = s.document().len();
+    assert!(all > 65, "{all}");
+    assert!(there(&s).iter().all(|t| *t == Some(true)));
+    assert_eq!(s.world().resource::<Arriving>().count(), 0);
+
+    // Everything is deleted, and comes back in one step.
+    let ids: Vec<_> = s.document().objects().map(|(id, _)| id).collect();
+    select(&mut s, &ids);
+    s.ask(Command::Objects(Ask::Delete));
+    s.settle();
+    assert_eq!(s.document().len(), 0);
+    let before = |s: &Studio| there(s).iter().filter(|t| t.is_some()).count();
+    s.send(Command::Undo);
+    let mut came = 0;
+    let mut frames = 0;
+    while came < all {
+        s.frame();
+        let now = before(&s);
+        assert!(now - came <= 48, "{} came in one frame", now - came);
+        // Those that were made first come first.
+        let order = there(&s);
+        assert!(order[..now].iter().all(Option::is_some), "{order:?}");
+        came = now;
+        frames += 1;
+        assert!(frames < 20, "{came} of {all} came");
+    }
+    assert!(frames >= all.div_ceil(48));
+    s.settle();
+    assert!(there(&s).iter().all(|t| *t == Some(true)));
+
+    // A player that waits takes in all at once.
+    s.ask(Command::Redo);
+    s.settle();
+    s.world_mut().insert_resource(Delivery::All);
+    s.send(Command::Undo);
+    s.frame();
+    s.frame();
+    assert_eq!(before(&s), all);
 }

@@ -16,7 +16,7 @@ use midair_studio::hold::Held;
 use midair_studio::notice::Notices;
 use midair_studio::pick::Touch;
 use midair_studio::project::{Begin, Places, Project, Shelf};
-use midair_studio::show::{Drafts, ObjectMap};
+use midair_studio::show::{Arriving, Drafts, ObjectMap};
 use midair_studio::tools::{AddTool, Tool, ToolId};
 
 /// A second mode that does nothing, to leave Assemble for.
@@ -139,6 +139,12 @@ impl Studio {
         let faults = document.check();
         assert!(faults.is_empty(), "{faults:?}");
         let ids: Vec<_> = document.objects().map(|(id, _)| id).collect();
+        let map = self.world().resource::<ObjectMap>();
+        let arriving = self.world().resource::<Arriving>().count() > 0;
+        let ids: Vec<_> = ids
+            .into_iter()
+            .filter(|&id| !arriving || map.get(id).is_some())
+            .collect();
         for id in ids {
             assert!(self.shown(id).is_finite(), "object {id} is shown nowhere");
             if let Some(draft) = self.drafted(id) {
@@ -181,6 +187,7 @@ impl Studio {
             self.frame();
             let world = self.world();
             let busy = world.resource::<Evaluations>().progress().next().is_some()
+                || world.resource::<Arriving>().count() > 0
                 || !world.resource::<Errands>().is_empty();
             quiet = if busy { 0 } else { quiet + 1 };
             if busy {
@@ -193,6 +200,15 @@ impl Studio {
     pub fn ask(&mut self, command: Command) {
         self.app.world_mut().write_message(command);
         self.frame();
+    }
+
+    /// Asks for something in the frame that comes next.
+    pub fn send(&mut self, command: Command) {
+        self.app.world_mut().write_message(command);
+    }
+
+    pub fn world_mut(&mut self) -> &mut World {
+        self.app.world_mut()
     }
 
     pub fn input(&mut self) -> Mut<'_, HandsInput> {

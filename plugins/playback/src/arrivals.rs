@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use midair_studio::{
     command::Errands,
     evaluate::{Delivered, Delivery, Evaluations, Job},
+    show::Arriving,
 };
 
 /// What works off the frame, as the player and the recorder see it.
@@ -47,7 +48,8 @@ impl OffFrame for Studio {
         let solids = world.get_resource::<Evaluations>();
         let files = world.get_resource::<Errands>();
         let all = solids.map_or(0, |e| e.progress().count()) + files.map_or(0, Errands::len);
-        all.saturating_sub(self.unfinished(world))
+        let arriving = world.get_resource::<Arriving>();
+        all.saturating_sub(self.unfinished(world)) + arriving.map_or(0, Arriving::count)
     }
 
     fn is_waiting(&self, world: &World, job: Job) -> bool {

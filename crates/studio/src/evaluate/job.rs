@@ -2,6 +2,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
+use bevy::math::bounding::Aabb3d;
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::prelude::{Pose, SharedShape, TriMesh as Trimesh, TriMeshFlags};
 use midair_field::Placement;
@@ -10,7 +11,7 @@ use midair_field::bake::Progress;
 use midair_field::{Node, Place, Sweep};
 use midair_gpu::Emitted;
 use midair_library::Volumes;
-use midair_mesh::TriMesh;
+use midair_mesh::{Aabb, TriMesh};
 use midair_solid::{Clones, Solid, SolidError, clones, own_surface};
 
 use super::backend::{Asked, Backend};
@@ -22,6 +23,8 @@ pub struct Made {
     /// The whole surface, closed and welded, in the recipe's own frame. Of a row of clones, that of
     /// one of them; of an open sweep, the surface that it is.
     pub mesh: Arc<TriMesh>,
+    /// A box around that.
+    pub bounds: Aabb,
     /// Where the clones of a row stand.
     pub places: Option<Arc<[Place]>>,
     /// Of a row of very many clones, the surfaces of all of them in a few pieces, ready to be drawn;
@@ -45,6 +48,12 @@ pub struct Made {
     pub(crate) on_card: bool,
     /// Bytes held, about.
     pub bytes: usize,
+}
+
+/// With its box, which otherwise each thing that is drawn as it would look for in all of its corners.
+fn boxed(mut mesh: Mesh, bounds: Aabb) -> Mesh {
+    mesh.final_aabb = (!bounds.is_empty()).then(|| Aabb3d::from_min_max(bounds.min, bounds.max));
+    mesh
 }
 
 impl Made {
@@ -103,7 +112,7 @@ impl Made {
         uv.extend(own);
         let made = Self::from_mesh(Arc::new(mesh));
         if let Ok(mut drawn) = made.drawn.lock() {
-            let sharp = to_bevy_mesh(&sharp);
+            let sharp = boxed(to_bevy_mesh(&sharp), made.bounds);
             *drawn = Some(sharp.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv));
         }
         made
@@ -117,7 +126,8 @@ impl Made {
 
     fn from(mesh: Arc<TriMesh>, flags: TriMeshFlags) -> Self {
         let shape = shape(&mesh, flags);
-        let drawn = to_bevy_mesh(&mesh);
+        let bounds = mesh.bounds();
+        let drawn = boxed(to_bevy_mesh(&mesh), bounds);
         // Positions, normals and indices, held as a mesh, a drawing and a collider with its tree.
         let bytes = mesh.positions.len() * 24 * 3 + mesh.triangles.len() * (12 * 3 + 64);
         Self {
@@ -132,6 +142,7 @@ impl Made {
             bytes,
             places: None,
             pieces: std::sync::Mutex::default(),
+            bounds,
             mesh,
         }
     }

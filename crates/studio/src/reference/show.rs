@@ -99,10 +99,11 @@ fn show(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut objects: Query<(Entity, &ObjectEntity, Option<&mut Shown>)>,
+    fresh: Query<(), Added<ObjectEntity>>,
     mut waiting: Local<bool>,
     mut commands: Commands,
 ) {
-    if !project.is_changed() && !*waiting {
+    if !project.is_changed() && !*waiting && fresh.is_empty() {
         return;
     }
     *waiting = false;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::platform::collections::HashMap;
+use bevy::platform::collections::hash_map::Entry;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Collider;
 use midair_document::{Document, Kind, Object, ObjectId};
@@ -15,7 +16,7 @@ use midair_mesh::{MeshHash, TriMesh};
 use super::material::{Dress, Worn};
 use super::{CardMesh, CardWrites, Drafts, Seen, transform};
 use crate::StudioSet;
-use crate::evaluate::{Deliver, Delivered, Evaluations, Key, Made, ONE_BY_ONE, merged};
+use crate::evaluate::{Deliver, Delivered, Delivery, Evaluations, Key, Made, ONE_BY_ONE, merged};
 use crate::pick::Proxy;
 use crate::project::Project;
 use crate::settings::{LinesShown, Settings};
@@ -115,6 +116,34 @@ impl Showing {
     }
 }
 
+/// What is in the document and not in the room yet: so many come in a frame, those that were made first before the others, so
+/// that a thousand at once cost no frame.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arriving {
+    /// Objects without an entity.
+    objects: usize,
+    /// Objects whose solid is made and not shown.
+    solids: usize,
+}
+
+impl Arriving {
+    /// How many are on their way.
+    pub fn count(&self) -> usize {
+        self.objects + self.solids
+    }
+}
+
+/// How many come in a frame: a player that waits for them takes in all at once.
+fn most(delivery: &Delivery) -> usize {
+    match delivery {
+        Delivery::All => usize::MAX,
+        Delivery::AsTheyCome | Delivery::Exactly(_) => A_FRAME,
+    }
+}
+
+/// Objects that come to be, and solids that are shown, in one frame.
+const A_FRAME: usize = 48;
+
 /// One clone of a row: a child of the row's own entity.
 #[derive(Component, Clone, Copy, Debug)]
 pub(super) struct CloneOf(pub ObjectId);
@@ -143,6 +172,7 @@ impl Drawn {
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<ObjectMap>()
         .init_resource::<Drawn>()
+        .init_resource::<Arriving>()
         .add_systems(
             Update,
             (spawn, place, show, super::ink::draw)
@@ -154,8 +184,13 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// One entity per object.
-fn spawn(project: Res<Project>, mut map: ResMut<ObjectMap>, mut commands: Commands) {
-    if !project.is_changed() {
+fn spawn(
+    (project, settings, delivery): (Res<Project>, Res<Settings>, Res<Delivery>),
+    mut map: ResMut<ObjectMap>,
+    mut arriving: ResMut<Arriving>,
+    mut commands: Commands,
+) {
+    if !project.is_changed() && arriving.objects == 0 {
         return;
     }
     let document = project.document();
@@ -166,19 +201,36 @@ fn spawn(project: Res<Project>, mut map: ResMut<ObjectMap>, mut commands: Comman
         }
         lives
     });
+    let (mut left, mut waiting) = (most(&delivery), 0);
     for (id, object) in document.objects() {
-        map.0.entry(id).or_insert_with(|| {
-            commands
-                .spawn((
-                    Name::new(object.name.clone()),
-                    ObjectEntity(id),
-                    Showing::default(),
-                    MeshMaterial3d::<StandardMaterial>::default(),
-                    transform(&object.placement),
-                    Visibility::default(),
-                ))
-                .id()
-        });
+        let Entry::Vacant(free) = map.0.entry(id) else {
+            continue;
+        };
+        if left == 0 {
+            waiting += 1;
+            continue;
+        }
+        left -= 1;
+        let entity = commands.spawn((
+            Name::new(object.name.clone()),
+            ObjectEntity(id),
+            Showing::default(),
+            MeshMaterial3d::<StandardMaterial>::default(),
+            transform(&object.placement),
+            seen(document, &settings, id, object),
+        ));
+        free.insert(entity.id());
+    }
+    arriving.objects = waiting;
+}
+
+/// Whether an object is to be seen.
+fn seen(document: &Document, settings: &Settings, id: ObjectId, object: &Object) -> Visibility {
+    let hidden = settings.scaffold.lines == LinesShown::Hidden && object.line().is_some();
+    if document.is_visible(id) && !hidden {
+        Visibility::Inherited
+    } else {
+        Visibility::Hidden
     }
 }
 
@@ -200,12 +252,7 @@ fn place(
             return;
         };
         at.set_if_neq(transform(drafts.get(id.0).unwrap_or(&object.placement)));
-        let hidden = settings.scaffold.lines == LinesShown::Hidden && object.line().is_some();
-        visibility.set_if_neq(if document.is_visible(id.0) && !hidden {
-            Visibility::Inherited
-        } else {
-            Visibility::Hidden
-        });
+        visibility.set_if_neq(seen(document, &settings, id.0, object));
     };
     // What a hand let go of goes back to where the document has it.
     let before = std::mem::replace(&mut *held, drafts.iter().map(|(id, _)| id).collect());
@@ -228,13 +275,15 @@ fn show(
     mut evaluations: ResMut<Evaluations>,
     (mut drawn, mut writes): (ResMut<Drawn>, ResMut<CardWrites>),
     mut meshes: ResMut<Assets<Mesh>>,
-    mut objects: Query<(Entity, &ObjectEntity, &mut Showing, Worn, Option<&Children>)>,
+    (map, mut arriving): (Res<ObjectMap>, ResMut<Arriving>),
+    mut objects: Query<(&mut Showing, Worn, Option<&Children>)>,
     stand_ins: Query<(), Or<(With<StandIn>, With<CloneOf>)>>,
-    delivered: Res<Delivered>,
+    (delivery, delivered): (Res<Delivery>, Res<Delivered>),
     mut awake: Local<u8>,
     mut commands: Commands,
 ) {
-    let busy = evaluations.progress().next().is_some() || !delivered.0.is_empty();
+    let busy =
+        evaluations.progress().next().is_some() || !delivered.0.is_empty() || arriving.count() > 0;
     // What was given up on the way is asked for once more.
     *awake = match *awake {
         _ if busy || project.is_changed() => 3,
@@ -242,8 +291,11 @@ fn show(
         left => left - 1,
     };
     let document = project.document();
-    for (entity, id, mut showing, look, children) in &mut objects {
-        let Some(object) = document.object(id.0) else {
+    let (mut left, mut waiting) = (most(&delivery), 0);
+    // In the order in which they were made.
+    for (id, object) in document.objects() {
+        let Some(entity) = map.get(id) else { continue };
+        let Ok((mut showing, look, children)) = objects.get_mut(entity) else {
             continue;
         };
         let made = match &object.kind {
@@ -295,6 +347,11 @@ fn show(
                     }
                     continue;
                 };
+                if left == 0 {
+                    waiting += 1;
+                    continue;
+                }
+                left -= 1;
                 showing.solid = Some(key);
                 match &made.places {
                     Some(places) => {
@@ -317,7 +374,7 @@ fn show(
                         } else {
                             pieces
                         };
-                        stand(each, &Dress::of(look), entity, id.0, &mut commands);
+                        stand(each, &Dress::of(look), entity, id, &mut commands);
                     }
                     None => {
                         let surface = evaluations.surface(&key);
@@ -357,8 +414,8 @@ fn show(
             commands
                 .spawn((
                     Proxy {
-                        object: id.0,
-                        size: (made.mesh.bounds().size() * object.placement.scale).length(),
+                        object: id,
+                        size: (made.bounds.size() * object.placement.scale).length(),
                     },
                     Collider::from(shape),
                     transform(&object.placement),
@@ -367,6 +424,7 @@ fn show(
         });
         showing.made = Some(made);
     }
+    arriving.solids = waiting;
     // Handles that only this table holds belong to nothing on screen.
     drawn.0.retain(|_, handle| match handle {
         Handle::Strong(strong) => Arc::strong_count(strong) > 1,

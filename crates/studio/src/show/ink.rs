@@ -34,10 +34,11 @@ pub(super) fn draw(
     mut drawn_at: Local<Option<i32>>,
     mut meshes: ResMut<Assets<Mesh>>,
     objects: Query<(Entity, &ObjectEntity, Option<&Inked>)>,
+    fresh: Query<(), Added<ObjectEntity>>,
     mut commands: Commands,
 ) {
     let zoom = zoom(&hands);
-    if !project.is_changed() && *drawn_at == Some(zoom) {
+    if !project.is_changed() && *drawn_at == Some(zoom) && fresh.is_empty() {
         return;
     }
     *drawn_at = Some(zoom);

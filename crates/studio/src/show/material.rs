@@ -235,7 +235,8 @@ pub(super) fn plugin(app: &mut App) {
                     .or_else(resource_changed::<Project>)
                     .or_else(resource_changed::<Settings>)
                     .or_else(resource_changed::<MaterialShelf>)
-                    .or_else(resource_changed::<DialDraft>),
+                    .or_else(resource_changed::<DialDraft>)
+                    .or_else(any_match_filter::<Added<ObjectEntity>>),
             ),
         );
 }
@@ -248,7 +249,7 @@ fn paint(
     mut plain: ResMut<Assets<StandardMaterial>>,
     mut living: ResMut<Assets<Living>>,
     mut shaders: ResMut<Assets<Shader>>,
-    objects: Query<(Entity, &ObjectEntity, Worn), Without<CloneOf>>,
+    objects: Query<(Entity, Ref<ObjectEntity>, Worn), Without<CloneOf>>,
     clones: Query<(Entity, &CloneOf)>,
     mut painted: Local<Cues>,
     mut commands: Commands,
@@ -260,7 +261,7 @@ fn paint(
         project.is_changed() || settings.is_changed() || shelf.is_changed() || draft.is_changed();
     let other = |id: &ObjectId| painted.0.get(id) != cues.0.get(id);
     for (entity, object, worn) in &objects {
-        if !all && !other(&object.0) {
+        if !all && !other(&object.0) && !object.is_added() {
             continue;
         }
         let cue = cues.0.get(&object.0).unwrap_or(&usual);

@@ -20,7 +20,9 @@ use midair_field::Placement;
 pub(crate) use card::Roomy;
 pub use card::{CardMesh, CardWrites, Seen, SeenParts};
 pub use cue::{Cue, Cues, Tint};
-pub use follow::{Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh};
+pub use follow::{
+    Arriving, Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh,
+};
 pub use form::form;
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, Unhurried, camera, headset, is_software};
