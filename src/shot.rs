@@ -53,8 +53,8 @@ impl Making {
 /// Who looks at what is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SeenBy {
-    /// A camera that frames the work.
-    Camera,
+    /// A camera that frames the work, in a picture of so many pixels across and down.
+    Camera(u32, u32),
     /// Two eyes of somebody who wears a headset, side by side.
     Headset,
 }
@@ -77,7 +77,7 @@ pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()>
         );
     }
     let size = match seen_by {
-        SeenBy::Camera => UVec2::new(1280, 720),
+        SeenBy::Camera(width, height) => UVec2::new(width, height),
         SeenBy::Headset => ONE_EYE * UVec2::new(2, 1),
     };
     let target = {
@@ -90,8 +90,8 @@ pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()>
         ))
     };
     match seen_by {
-        SeenBy::Camera => {
-            let view = frame_all(app.world());
+        SeenBy::Camera(..) => {
+            let view = frame_all(app.world(), size.as_vec2());
             app.world_mut().spawn((
                 camera(Eye::Picture),
                 RenderTarget::from(target.clone()),
@@ -191,7 +191,7 @@ fn store(image: Image, file: &Path) -> Result<()> {
 }
 
 /// Looks at everything from the front, a little from above and the right, so near that it fills the picture.
-fn frame_all(world: &World) -> Transform {
+fn frame_all(world: &World, size: Vec2) -> Transform {
     let document = world.resource::<Project>().document();
     let mut corners: Vec<Vec3> = Vec::new();
     for (id, object) in document.objects() {
@@ -216,7 +216,7 @@ fn frame_all(world: &World) -> Transform {
     let turn = Transform::IDENTITY.looking_to(-from, Vec3::Y).rotation;
     // The view's own middle and half of what it sees of a metre away, upwards and to the side.
     let tall = (0.5 * PerspectiveProjection::default().fov).tan() * FILLED;
-    let wide = tall * 16.0 / 9.0;
+    let wide = tall * size.x / size.y.max(1.0);
     let mut centre = low.midpoint(high);
     let mut away = 0.0f32;
     // What is near looks larger: the middle of what is seen is not that of the box.

@@ -123,6 +123,9 @@ pub struct Play {
     /// That picture as two eyes of a headset see it, with hands and panels, side by side
     #[arg(long, requires = "shot", hide = true)]
     in_headset: bool,
+    /// Pixels of that picture
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "shot", conflicts_with = "in_headset", hide = true)]
+    size: Option<(u32, u32)>,
     /// Write what happened as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,

@@ -103,7 +103,8 @@ pub(super) fn run(args: Play) -> Result<()> {
         let seen_by = if args.in_headset {
             shot::SeenBy::Headset
         } else {
-            shot::SeenBy::Camera
+            let (width, height) = args.size.unwrap_or((1280, 720));
+            shot::SeenBy::Camera(width, height)
         };
         shot::picture(&mut app, file, seen_by)?;
     }
