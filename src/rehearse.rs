@@ -2,9 +2,9 @@
 //!
 //! A test that drives real devices cannot count frames: it waits until what it did has arrived. `said.jsonl` gets a line of
 //! JSON for each frame; `asks.ron` is read as it grows, a command a line, and asked for as a panel
-//! would. Three lines are for the test alone: `boards` has the panels of the room told from then on, with the place of each word;
-//! `eyes FILE.png` takes a picture of what both eyes see in the headset; `parts FILE.json` writes where the time of the frames went
-//! since the line before.
+//! would. Four lines are for the test alone: `boards` has the panels of the room told from then on, with the place of each word;
+//! `eyes FILE.png` takes a picture of what both eyes see in the headset, and `window FILE.png` of the window on the desktop;
+//! `parts FILE.json` writes where the time of the frames went since the line before.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -172,6 +172,8 @@ fn hear(
             talk.boards = true;
         } else if let Some(file) = line.strip_prefix("eyes ") {
             seen.look(file.into(), &mut commands);
+        } else if let Some(file) = line.strip_prefix("window ") {
+            seen.look_at_window(file.into(), &mut commands);
         } else if let Some(file) = line.strip_prefix("parts ") {
             figures(&parts, Path::new(file));
             parts.restart();
@@ -238,6 +240,24 @@ impl EyesSeen {
                     },
                 );
         }
+    }
+}
+
+impl EyesSeen {
+    /// What the window on the desktop shows.
+    fn look_at_window(&mut self, file: PathBuf, commands: &mut Commands) {
+        commands.spawn(Screenshot::primary_window()).observe(
+            move |shot: On<ScreenshotCaptured>, mut seen: ResMut<EyesSeen>| {
+                let written = shot.image.clone().try_into_dynamic();
+                let written = written
+                    .map_err(anyhow::Error::from)
+                    .and_then(|image| Ok(image.to_rgb8().save(&file)?));
+                match written {
+                    Ok(()) => seen.written += 1,
+                    Err(fault) => eprintln!("midair: {}: {fault}", file.display()),
+                }
+            },
+        );
     }
 }
 

@@ -144,6 +144,11 @@ pub fn tracking(folder: &Path) -> Result<()> {
         app.until(&format!("a hand that {lost} is not tracked"), |now| {
             now["hands"][1]["tracked"] == false
         })?;
+        if lost == "is nowhere" {
+            app.until("it says that the place is none", |now| {
+                says(now, "a place for the right controller that is none")
+            })?;
+        }
         if app.now["hands"][1]["pose"] != pose {
             bail!(
                 "a hand that {lost} has moved to {}",

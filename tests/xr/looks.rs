@@ -17,43 +17,139 @@ use crate::stage::{App, Runtime, midair};
 /// Pixels of an eye along an edge, as a multiple of what this runtime asks for: 320 x 240.
 const SHARPNESS: f32 = 2.5;
 
-/// Takes them all.
-pub fn looks(folder: &Path) -> Result<()> {
+/// Where the hands are held, left and right.
+fn held() -> [Pose; 2] {
+    let left = Pose {
+        position: Vec3::new(-0.20, 1.08, 0.3),
+        rotation: Quat::from_rotation_y(-0.2),
+    };
+    let right = Pose {
+        position: Vec3::new(0.06, 1.12, 0.28),
+        rotation: Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.1),
+    };
+    [left, right]
+}
+
+/// Somebody in the headset, before the chair, both hands held.
+fn worn(
+    folder: &Path,
+    comfort: &str,
+    environment: &[(&str, &str)],
+) -> Result<(Runtime, Performer, App)> {
     let chair = folder.join("chair.midair").display().to_string();
     midair(&["play", "/job/assets/sessions/chair.ron", "--save", &chair])?;
     let config = folder.join("home/config");
     fs::create_dir_all(&config)?;
     fs::write(
         config.join("settings.ron"),
-        format!("(comfort: (sharpness: {SHARPNESS:?}, budget: true))"),
+        format!("(comfort: (sharpness: {SHARPNESS:?}, {comfort}))"),
     )?;
-    let _runtime = Runtime::remote()?;
+    let runtime = Runtime::remote()?;
     let mut performer = Performer::new()?;
     performer.rig.head = Pose {
         position: Vec3::new(0.0, 1.45, 0.75),
         rotation: Quat::from_rotation_x(-0.35),
     };
     performer.rig.send()?;
-    let mut app = App::start(folder, &["--vr", &chair])?;
+    let mut app = App::start_with(folder, &["--vr", &chair], environment)?;
     focus(&mut app)?;
-    let left = Pose {
-        position: Vec3::new(-0.22, 1.08, 0.3),
-        rotation: Quat::from_rotation_y(-0.2),
-    };
-    let right = Pose {
-        position: Vec3::new(0.14, 1.12, 0.35),
-        rotation: Quat::from_rotation_y(0.5) * Quat::from_rotation_x(0.1),
-    };
-    performer.go(&mut app, Side::Left, left)?;
-    performer.go(&mut app, Side::Right, right)?;
-    let panel = |app: &mut App, id: &str, open| {
-        app.ask(&Command::Panel {
-            id: id.to_owned(),
-            open,
-        })
-    };
+    for (side, pose) in Side::BOTH.into_iter().zip(held()) {
+        performer.go(&mut app, side, pose)?;
+    }
     panel(&mut app, "tutorial", false)?;
     app.until("the chair is drawn", |now| now["busy"] == 0)?;
+    Ok((runtime, performer, app))
+}
+
+fn panel(app: &mut App, id: &str, open: bool) -> Result<()> {
+    app.ask(&Command::Panel {
+        id: id.to_owned(),
+        open,
+    })
+}
+
+/// What stands on the desk meanwhile: the window as a mirror and as a spectator sees it; and what the eyes see in the white room,
+/// with the left hand leading, and while the world turns in steps and is moved.
+pub fn desk(folder: &Path) -> Result<()> {
+    let _display = crate::stage::display()?;
+    let (_runtime, mut performer, mut app) = worn(folder, "snap_turn: 30.0", &[("DISPLAY", ":7")])?;
+    panel(&mut app, "library", true)?;
+    performer.frames(&mut app, 16)?;
+    let set = |app: &mut App, key: &str, value: &str| {
+        app.ask(&Command::Set {
+            key: key.to_owned(),
+            value: value.to_owned(),
+        })
+    };
+    for (value, name) in [("Mirror", "mirror.png"), ("Spectator", "spectator.png")] {
+        set(&mut app, "comfort.desktop", &format!("\"{value}\""))?;
+        performer.frames(&mut app, 8)?;
+        let seen = written(&app);
+        app.say(&format!("window {}", folder.join(name).display()))?;
+        app.until("a picture of the window", |now| now["eyes"] == seen + 1)?;
+    }
+    let [mirror, spectator] = ["mirror.png", "spectator.png"].map(|name| {
+        let path = folder.join(name);
+        image::open(&path).with_context(|| path.display().to_string())
+    });
+    let apart = unlikeness(&mirror?.to_luma8(), &spectator?.to_luma8(), 0);
+    if apart < 1000 {
+        bail!("mirror and spectator see the same: {apart}");
+    }
+    set(&mut app, "look.room", "\"Paper\"")?;
+    performer.frames(&mut app, 8)?;
+    look(&mut app, &folder.join("paper.png"))?;
+    set(&mut app, "look.room", "\"Dusk\"")?;
+    set(&mut app, "hands.left_handed", "true")?;
+    performer.frames(&mut app, 8)?;
+    look(&mut app, &folder.join("left-handed.png"))?;
+    set(&mut app, "hands.left_handed", "false")?;
+    panel(&mut app, "library", false)?;
+
+    // A grip on nothing and a push of the stick, again and again: some of the pictures are of the frame of a turn.
+    let air = Pose::at(Vec3::new(0.25, 1.0, 0.45));
+    performer.go(&mut app, Side::Right, air)?;
+    performer.frames(&mut app, 4)?;
+    performer.press(&mut app, Side::Right, Action::Grab, true)?;
+    for i in 0..3 {
+        let seen = written(&app);
+        app.say(&format!(
+            "eyes {}",
+            folder.join(format!("turn-{i}.png")).display()
+        ))?;
+        for step in 0..60 {
+            let hand = &mut performer.rig.hands[1];
+            let pushed = step % 2 == 0;
+            (hand.pad_touch, hand.pad.x) = (pushed, if pushed { 1.0 } else { 0.0 });
+            performer.rig.send()?;
+            performer.frames(&mut app, 1)?;
+            if written(&app) > seen {
+                break;
+            }
+        }
+    }
+    // Nothing of the window's is drawn in an eye: above both there is air.
+    let turned = image::open(folder.join("turn-0.png"))
+        .context("turn-0.png")?
+        .to_luma8();
+    let width = turned.width() / 2;
+    let above = |x| image::imageops::crop_imm(&turned, x, 0, width, 40).to_image();
+    let apart = unlikeness(&above(0), &above(width), 0);
+    if apart > 4000 {
+        bail!("the eyes do not see the same air: {apart}");
+    }
+    let hand = &mut performer.rig.hands[1];
+    (hand.pad_touch, hand.pad.x, hand.squeeze) = (false, 0.0, 0.0);
+    performer.rig.send()?;
+    performer.frames(&mut app, 4)?;
+    println!("     pictures are in {}", folder.display());
+    quit(&mut app)
+}
+
+/// Takes them all.
+pub fn looks(folder: &Path) -> Result<()> {
+    let (_runtime, mut performer, mut app) = worn(folder, "budget: true", &[])?;
+    let [_, right] = held();
     panel(&mut app, "library", true)?;
     performer.frames(&mut app, 16)?;
     // As somebody looks who looks at it: the library is at the side of the hand that does not lead.

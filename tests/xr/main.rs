@@ -10,6 +10,7 @@ mod life;
 mod looks;
 mod perform;
 mod profiles;
+mod restored;
 mod room;
 mod scenario;
 mod stage;
@@ -30,7 +31,7 @@ struct Scenario {
 
 /// Those that are no session.
 fn own() -> impl Iterator<Item = Scenario> {
-    let all: [(&str, fn(&Path) -> Result<()>); 15] = [
+    let all: [(&str, fn(&Path) -> Result<()>); 17] = [
         ("absent", life::absent),
         ("from-flat", life::from_flat),
         ("tracking", life::tracking),
@@ -39,7 +40,9 @@ fn own() -> impl Iterator<Item = Scenario> {
         ("killed", life::killed),
         ("room", room::room),
         ("taught", taught::taught),
+        ("restored", restored::restored),
         ("looks", looks::looks),
+        ("desk", looks::desk),
         ("index", profiles::index),
         ("touch", profiles::touch),
         ("wmr", profiles::wmr),

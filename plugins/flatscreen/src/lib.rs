@@ -27,7 +27,7 @@ mod stretch;
 mod view;
 
 use bevy::prelude::*;
-use bevy_egui::{EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPreUpdateSet, EguiPrimaryContextPass};
 use leafwing_input_manager::plugin::InputManagerSystem;
 use midair_studio::{StudioSet, hands::WriteHands, panel::Host, snap::ClearGuides};
 
@@ -42,8 +42,11 @@ pub struct FlatscreenPlugin;
 
 impl Plugin for FlatscreenPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(EguiPlugin::default())
-            .init_resource::<Pointer>()
+        app.add_plugins(EguiPlugin::default());
+        app.world_mut()
+            .resource_mut::<EguiGlobalSettings>()
+            .auto_create_primary_context = false;
+        app.init_resource::<Pointer>()
             .init_resource::<Gizmo>()
             .init_resource::<Pad>()
             .init_resource::<focus::Typing>()

@@ -4,6 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
+use bevy_egui::PrimaryEguiContext;
 use midair_studio::{
     hands::HandsInput,
     show::{Eye, camera},
@@ -156,6 +157,8 @@ pub(crate) fn spawn(mut commands: Commands) {
     commands.spawn((
         Name::new("camera"),
         camera(Eye::Working),
+        // Left to itself it would take the first camera there is: an eye of the headset.
+        PrimaryEguiContext,
         orbit.transform(),
         orbit,
     ));

@@ -4,11 +4,14 @@ use bevy::prelude::*;
 use midair_studio::hands::{Hands, Pose};
 use midair_studio::panel::Host;
 use midair_studio::settings::{Desktop, Settings};
-use midair_studio::show::Eye;
+use midair_studio::show::{Eye, FIELD_OF_VIEW};
 use midair_studio::world::WorldView;
 
 /// Seconds in which the window follows the head most of the way.
 const STEADY: f32 = 0.12;
+
+/// Of the height of a mirror's view, in radians: hands and what is beside them are in it.
+const WIDE: f32 = 1.2;
 
 /// Where the window's camera stood before it followed the head, and where it is, in metres of the room.
 #[derive(Default)]
@@ -21,15 +24,22 @@ pub(crate) fn mirror(
     host: Res<Host>,
     (settings, view): (Res<Settings>, Res<WorldView>),
     (hands, time): (Res<Hands>, Res<Time>),
-    mut eyes: Query<(&Eye, &mut Transform)>,
+    mut eyes: Query<(&Eye, &mut Transform, &mut Projection)>,
     mut followed: Local<Followed>,
 ) {
     let head = hands
         .head
         .filter(|_| *host == Host::Room && settings.comfort.desktop == Desktop::Mirror);
-    for (eye, mut transform) in &mut eyes {
+    for (eye, mut transform, mut projection) in &mut eyes {
         if *eye != Eye::Working {
             continue;
+        }
+        let wanted = if head.is_some() { WIDE } else { FIELD_OF_VIEW };
+        if (head.is_some() || followed.before.is_some())
+            && matches!(&*projection, Projection::Perspective(p) if p.fov != wanted)
+            && let Projection::Perspective(perspective) = &mut *projection
+        {
+            perspective.fov = wanted;
         }
         let Some(head) = head else {
             if let Some(before) = followed.before.take() {

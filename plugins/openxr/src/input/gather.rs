@@ -34,6 +34,8 @@ pub(super) struct Before {
     said: bool,
     /// A hand whose controller was on once.
     seen: [bool; 2],
+    /// That its place made no sense was said of this hand.
+    nowhere: [bool; 2],
 }
 
 /// What there is to read from, where a session runs.
@@ -96,6 +98,13 @@ pub(super) fn gather(
             &trouble,
             &mut controllers.hands[i],
         );
+        if read.senseless && !std::mem::replace(&mut before.nowhere[i], true) {
+            notices.warn(format!(
+                "The runtime gives a place for the {} controller that is none. It stays where it was, and can be used again once its place \
+                 is known. If that goes on, start the runtime anew.",
+                which(side)
+            ));
+        }
         let aims = read.aim.filter(|_| read.tracked && read.active);
         before.seen[i] |= read.active;
         down[i] = read.down;
@@ -110,6 +119,13 @@ pub(super) fn gather(
         };
     }
     alone(before, &mut hands, down, time.delta_secs(), &mut notices);
+}
+
+fn which(side: Side) -> &'static str {
+    match side {
+        Side::Left => "left",
+        Side::Right => "right",
+    }
 }
 
 /// A controller that stays the only one does what the other hand would, with its menu button held.
@@ -133,7 +149,7 @@ fn alone(
         return;
     }
     if !std::mem::replace(&mut before.said, true) {
-        let which = if only == Side::Left { "left" } else { "right" };
+        let which = which(only);
         notices.info(format!(
             "Only the {which} controller is on. Hold its menu button and it does what the other hand would: trigger alt, \
              left undo, right redo, up save, down delete. Switch the other one on at any time."

@@ -43,6 +43,8 @@ struct Held {
 pub(super) struct HandRead {
     pub aim: Option<Pose>,
     pub tracked: bool,
+    /// Whether the runtime gives a place that is none.
+    pub senseless: bool,
     /// Whether the controller is on.
     pub active: bool,
     pub down: ActionSet,
@@ -175,8 +177,8 @@ impl Input {
         let set = &self.sets[main as usize];
         let hand = self.hands[side as usize];
         let i = side as usize;
-        let (grip, grip_tracked) = located(&set.grip[i], &self.floor, time, trouble);
-        let (aim, aim_tracked) = located(&set.aim[i], &self.floor, time, trouble);
+        let grip = located(&set.grip[i], &self.floor, time, trouble);
+        let aim = located(&set.aim[i], &self.floor, time, trouble);
         let mut raw = Raw::default();
         let mut active = false;
         for (control, sense) in &set.senses {
@@ -228,11 +230,12 @@ impl Input {
         }
         let held = &mut self.held[i];
         let (down, swipe) = held.keys.advance(&raw, &held.arms, held.swipe);
-        let tracked = grip_tracked && aim_tracked && grip.is_some() && aim.is_some();
+        let followed = |at: &Located| at.tracked && at.pose.is_some();
+        let tracked = followed(&grip) && followed(&aim);
         controller.active = active;
         controller.tracked = tracked;
-        controller.grip = grip.or(controller.grip);
-        controller.aim = aim.or(controller.aim);
+        controller.grip = grip.pose.or(controller.grip);
+        controller.aim = aim.pose.or(controller.aim);
         controller.profile = held.profile.map_or("", |p| p.id);
         controller.name = held.profile.map_or("", |p| p.name);
         controller.trigger = raw.act;
@@ -243,8 +246,9 @@ impl Input {
             .unwrap_or(raw.pad != Vec2::ZERO)
             .then_some(raw.pad);
         HandRead {
-            aim,
+            aim: aim.pose,
             tracked,
+            senseless: grip.senseless || aim.senseless,
             active,
             down,
             swipe,
@@ -253,7 +257,7 @@ impl Input {
 
     /// Where the eyes are at `time`, in metres of the room.
     pub(super) fn head(&self, time: Time, trouble: &Trouble) -> Option<Pose> {
-        located(&self.eyes, &self.floor, time, trouble).0
+        located(&self.eyes, &self.floor, time, trouble).pose
     }
 
     /// Whom a pulse goes to.
@@ -270,23 +274,37 @@ impl Input {
     }
 }
 
-/// Where a space is, if that is known, and whether it is followed rather than guessed. A pose that is none (NaN, no turn)
-/// counts as not known.
-fn located(space: &Space, floor: &Space, time: Time, trouble: &Trouble) -> (Option<Pose>, bool) {
+/// Where a space is.
+#[derive(Clone, Copy, Default)]
+struct Located {
+    /// If that is known. A pose that is none (NaN, no turn) counts as not known.
+    pose: Option<Pose>,
+    /// Whether it is followed rather than guessed.
+    tracked: bool,
+    /// The runtime calls such a pose known.
+    senseless: bool,
+}
+
+fn located(space: &Space, floor: &Space, time: Time, trouble: &Trouble) -> Located {
     let location = match space.locate(floor, time) {
         Ok(location) => location,
         Err(code) => {
             trouble.note("xrLocateSpace", code);
-            return (None, false);
+            return Located::default();
         }
     };
     let flags = location.location_flags;
     let valid = SpaceLocationFlags::POSITION_VALID | SpaceLocationFlags::ORIENTATION_VALID;
     if !flags.contains(valid) {
-        return (None, false);
+        return Located::default();
     }
     let tracked = SpaceLocationFlags::POSITION_TRACKED | SpaceLocationFlags::ORIENTATION_TRACKED;
-    (pose(&location.pose), flags.contains(tracked))
+    let pose = pose(&location.pose);
+    Located {
+        pose,
+        tracked: flags.contains(tracked),
+        senseless: pose.is_none(),
+    }
 }
 
 fn pose(from: &Posef) -> Option<Pose> {

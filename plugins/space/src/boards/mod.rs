@@ -24,7 +24,7 @@ pub use bar::BAR;
 pub(crate) use bar::moves as bar_moves;
 pub(crate) use host::{arrange, paint};
 pub(crate) use picture::{Painted, plugin};
-pub(crate) use place::place;
+pub(crate) use place::{WRIST, place};
 pub(crate) use wrist::Page;
 
 use crate::DMM_PER_POINT;

@@ -12,7 +12,7 @@ use crate::room::{Stance, facing};
 /// Metres that boards stand below the eyes.
 const BELOW: f32 = 0.04;
 /// Metres from a hand to the middle of its board, outwards, up and back, as the hand is held level.
-const WRIST: Vec3 = Vec3::new(0.16, -0.03, 0.06);
+pub(crate) const WRIST: Vec3 = Vec3::new(0.23, 0.0, 0.06);
 /// How much of a wrist must be turned to the eyes to show its board, and to go on showing it.
 const TURNED: [f32; 2] = [0.45, 0.25];
 /// Seconds in which a board opens.

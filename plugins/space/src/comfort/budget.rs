@@ -6,6 +6,7 @@ use bevy::prelude::*;
 use midair_studio::hands::Side;
 use midair_studio::settings::Settings;
 
+use crate::boards::WRIST;
 use crate::labels::{Label, LabelKey, Labels, Weight};
 use crate::room::Stance;
 
@@ -72,7 +73,7 @@ pub(crate) fn tell(
     labels.say(Label {
         key: LabelKey::Budget,
         // Over the panel on the wrist, which it would cover before it.
-        at: stance.hand(off).position + Vec3::new(0.16 * outwards, 0.205, 0.06),
+        at: stance.hand(off).position + Vec3::new(WRIST.x * outwards, WRIST.y + 0.235, WRIST.z),
         text: format!("{mean:.1} ms of {BUDGET:.1} (most {worst:.1})   {rate:.0} Hz"),
         weight: late,
         ..Label::default()

@@ -14,12 +14,15 @@ use crate::room::{Root, Stance};
 
 /// Metres before the eyes.
 const AWAY: f32 = 1.0;
-/// Of the half angle that stays clear: wide open, and as narrow as it gets.
-const CLEAR: [f32; 2] = [1.15, 0.55];
+/// The half angle that stays clear, in radians: wide open, where a headset's own view ends, and as narrow as it gets.
+const CLEAR: [f32; 2] = [0.95, 0.40];
 /// Of the half angle beyond which all is dark, from where it begins.
 const SOFT: f32 = 0.35;
 /// Seconds in which it closes, and opens again.
 const EASES: f32 = 0.15;
+
+/// Radians from one frame to the next of a turn in steps.
+const JUMP: f32 = 0.12;
 
 /// The dark ring before the eyes.
 #[derive(Component)]
@@ -50,15 +53,22 @@ pub(crate) fn darken(
         room.rotation,
         room.translation,
     );
-    let moves = closed.last.replace(now).is_some_and(|last| last != now);
+    let last = closed.last.replace(now).unwrap_or(now);
+    let moves = last != now;
     let strength = settings.comfort.vignette.clamp(0.0, 1.0);
     let wanted = if moves && stance.head_known {
         strength
     } else {
         0.0
     };
-    let most = time.delta_secs() / EASES;
-    closed.part += (wanted - closed.part).clamp(-most, most);
+    closed.part = if jumps(&last, &now) {
+        // What is over in one frame is not waited for: it is dark in that frame, and opens after it.
+        wanted
+    } else {
+        // A frame that takes long opens it no farther than a short one, or nobody would see it.
+        let most = time.delta_secs().min(1.0 / 45.0) / EASES;
+        closed.part + (wanted - closed.part).clamp(-most, most)
+    };
     let Some(ring) = ring else {
         if closed.part > 0.0 {
             let page = images.add(Image::default());
@@ -96,6 +106,12 @@ pub(crate) fn darken(
     };
 }
 
+/// Whether the world turned, between two frames, by more than it does while a hand moves it.
+fn jumps(last: &Mat4, now: &Mat4) -> bool {
+    let turn = |m: &Mat4| m.to_scale_rotation_translation().1;
+    turn(last).angle_between(turn(now)) > JUMP
+}
+
 /// A ring of radius 1, clear at its inner edge and dark beyond the soft part.
 fn dark() -> Mesh {
     const SPOKES: u32 = 64;
@@ -126,4 +142,24 @@ fn dark() -> Mesh {
     .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, vec![[0.5, 0.5]; count])
     .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colours)
     .with_inserted_indices(Indices::U32(indices))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_in_steps_is_told_from_one_by_hand() {
+        let turned = |degrees: f32| {
+            Mat4::from_scale_rotation_translation(
+                Vec3::splat(0.7),
+                Quat::from_rotation_y(degrees.to_radians()),
+                Vec3::new(0.2, 0.0, degrees),
+            )
+        };
+        assert!(jumps(&turned(0.0), &turned(15.0)));
+        // Half a turn in a second.
+        assert!(!jumps(&turned(0.0), &turned(2.0)));
+        assert!(!jumps(&turned(30.0), &turned(30.0)));
+    }
 }

@@ -64,7 +64,10 @@ pub(super) fn afford(
     let software = unhurried.is_none() && adapter.is_none_or(|a| is_software(&a));
     for (entity, eye) in &cameras {
         let mut camera = commands.entity(entity);
-        if *eye == Eye::Headset || software && *eye == Eye::Working {
+        if *eye == Eye::Headset {
+            // Soft: near to the eyes every step of a shadow's edge is seen.
+            camera.insert(ShadowFilteringMethod::Gaussian);
+        } else if software && *eye == Eye::Working {
             camera.insert(ShadowFilteringMethod::Hardware2x2);
         } else {
             camera.insert((

@@ -9,14 +9,15 @@ use bevy::{
     color::ColorToComponents,
     dev_tools::infinite_grid::{InfiniteGrid, InfiniteGridPlugin, InfiniteGridSettings},
     light::{
-        CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight,
-        GlobalAmbientLight, NotShadowCaster, Skybox,
+        CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap,
+        EnvironmentMapLight, GlobalAmbientLight, NotShadowCaster, Skybox,
     },
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
     render::renderer::RenderAdapterInfo,
 };
 
+use crate::panel::Host;
 use crate::settings::{RoomKind, Settings};
 
 pub use eye::{Eye, FIELD_OF_VIEW, Unhurried, camera, headset};
@@ -97,7 +98,7 @@ impl Plugin for RoomPlugin {
             lines::plugin,
         ))
         .init_resource::<Air>()
-        .insert_resource(DirectionalLightShadowMap { size: 1536 })
+        .insert_resource(DirectionalLightShadowMap { size: MAP })
         .add_systems(Startup, furnish)
         .add_systems(
             Update,
@@ -105,6 +106,7 @@ impl Plugin for RoomPlugin {
                 paint.run_if(resource_changed::<Settings>),
                 breathe,
                 eye::afford,
+                shade.run_if(resource_changed::<Host>),
             )
                 .chain(),
         );
@@ -185,16 +187,42 @@ fn furnish(
             shadow_normal_bias: 1.2,
             ..default()
         },
-        CascadeShadowConfigBuilder {
+        cascades(Host::Screen),
+        Transform::from_xyz(-1.6, 3.6, 2.2).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+}
+
+/// Texels along an edge of what is seen from the key light.
+const MAP: usize = 1536;
+
+/// How far shadows reach, and how finely.
+fn cascades(host: Host) -> CascadeShadowConfig {
+    match host {
+        Host::Screen => CascadeShadowConfigBuilder {
             num_cascades: 1,
             minimum_distance: 0.02,
             first_cascade_far_bound: 4.0,
             maximum_distance: 9.0,
             overlap_proportion: 0.2,
-        }
-        .build(),
-        Transform::from_xyz(-1.6, 3.6, 2.2).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
+        },
+        // An eye of a headset sees three times as wide: what is within reach has a map of its own, or a hand's shadow is
+        // made of tiles.
+        Host::Room => CascadeShadowConfigBuilder {
+            num_cascades: 2,
+            minimum_distance: 0.05,
+            first_cascade_far_bound: 1.1,
+            maximum_distance: 6.0,
+            overlap_proportion: 0.25,
+        },
+    }
+    .build()
+}
+
+/// Shadows as whoever looks needs them.
+fn shade(host: Res<Host>, mut lights: Query<&mut CascadeShadowConfig, With<KeyLight>>) {
+    for mut light in &mut lights {
+        *light = cascades(*host);
+    }
 }
 
 /// Whether the processor does the drawing.
