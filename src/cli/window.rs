@@ -2,6 +2,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use bevy::app::AppExit;
+use bevy::prelude::{PostStartup, ResMut};
 use midair_document::{Document, MeshStore, Object};
 use midair_openxr::{Headset, Life};
 use midair_playback::{RecorderPlugin, Session, Step};
@@ -49,10 +50,19 @@ pub(super) fn run(args: Window) -> Result<()> {
         }
         None => app(Stage::Window, places, start),
     };
-    app.world_mut().resource_mut::<Evaluations>().backend = match args.backend {
+    let asked = args.backend;
+    let backend = move || match asked {
         Some(backend) => backend.forced(),
         None => evaluate::Backend::following(Choice::Auto),
     };
+    app.world_mut().resource_mut::<Evaluations>().backend = backend();
+    if app.world().contains_resource::<Life>() {
+        // A headset's runtime works on the drawing device's queue, which nobody else may use meanwhile: the card that
+        // makes has a device of its own there, and what it made comes by main memory.
+        app.add_systems(PostStartup, move |mut evaluations: ResMut<Evaluations>| {
+            evaluations.backend = backend();
+        });
+    }
     let kept = match &args.rehearse {
         Some(folder) => vec!["--rehearse".into(), folder.into()],
         None => Vec::new(),

@@ -92,6 +92,8 @@ struct Block {
 
 // Values are kept as 16-bit multiples of 1e-4 steps; else as f32.
 override QUANTISED: bool = false;
+// There are paintings among the leaves.
+override PAINTED: bool = false;
 
 const NONE: u32 = 0xffffffffu;
 const OUTSIDE: u32 = 0u;

@@ -42,7 +42,13 @@ fn steepest(b: Block) -> f32 {
     var most = 1.0;
     for (var i = b.off; i < b.off + b.len; i++) {
         if (tape[i] >> 29u) == LOAD {
-            most = max(most, leaf_slope(tape[i] & 0x1fffffffu, centre, 3.5 * g.step, g.around));
+            let leaf = tape[i] & 0x1fffffffu;
+            if is_painting(leaf) {
+                let to = inks(i + 1u, b.off + b.len);
+                most = max(most, painting_slope(leaf, i + 1u, to, centre, 3.5 * g.step, g.around));
+            } else {
+                most = max(most, leaf_slope(leaf, centre, 3.5 * g.step, g.around));
+            }
         }
     }
     return most;

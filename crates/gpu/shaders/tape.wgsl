@@ -30,7 +30,15 @@ fn evaluate(off: u32, len: u32, p: vec3<f32>) -> f32 {
         let op = instr >> 29u;
         i++;
         if op == LOAD {
-            let v = leaf_at(instr & 0x1fffffffu, p);
+            let leaf = instr & 0x1fffffffu;
+            var v = 0.0;
+            if is_painting(leaf) {
+                let to = inks(i, end);
+                v = number(LEAF * leaf + 2u) * painting_at(LEAF * leaf, i, to, to_local(LEAF * leaf, p));
+                i = to;
+            } else {
+                v = leaf_at(leaf, p);
+            }
             // Most operands are joined as soon as they are there: no need of the stack.
             if i < end && (tape[i] >> 29u) >= MIN {
                 top = joined(tape[i] >> 29u, top, v);
@@ -64,13 +72,20 @@ fn prune(off: u32, len: u32, centre: vec3<f32>, half: f32, slack: f32, out: u32)
         let instr = tape[i];
         let op = instr >> 29u;
         if op == LOAD {
-            let range = leaf_bounds(instr & 0x1fffffffu, centre, half, g.around);
+            let leaf = instr & 0x1fffffffu;
             let d = min(depth, DEEPEST - 1u);
-            bounds[d] = range + vec2(-slack, slack);
             starts[d] = n;
             depth++;
             tape[out + n] = instr;
             n++;
+            if is_painting(leaf) {
+                let to = inks(i + 1u, off + len);
+                bounds[d] = painting_bounds(leaf, i + 1u, to, centre, half, g.around) + vec2(-slack, slack);
+                n += hand_down(leaf, i + 1u, to, centre, half, g.around, out + n);
+                i = to - 1u;
+            } else {
+                bounds[d] = leaf_bounds(leaf, centre, half, g.around) + vec2(-slack, slack);
+            }
         } else if op == NEGATE {
             let d = depth - 1u;
             bounds[d] = -bounds[d].yx;

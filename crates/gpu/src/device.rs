@@ -1,7 +1,7 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::error::GpuError;
-use crate::kernels::{Kernels, sources};
+use crate::kernels::{For, Kernels, sources};
 use crate::wait::block_on;
 
 /// Which adapter may be used, and for how much.
@@ -40,6 +40,7 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
     pub(crate) plain: Kernels,
     quantised: OnceLock<Result<Kernels, GpuError>>,
+    painted: OnceLock<Result<Kernels, GpuError>>,
     /// Why it was lost, once it is.
     lost: Arc<Mutex<Option<String>>>,
     adapter: Adapter,
@@ -147,13 +148,14 @@ impl Gpu {
         let limits = device.limits();
         enough(&limits, &adapter.name, &wgpu::Limits::default())?;
         let timed = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let plain = Kernels::compile(&device, &sources(), false)?;
+        let plain = Kernels::compile(&device, &sources(), For::Plain)?;
         Ok(Self {
             tick: timed.then(|| queue.get_timestamp_period()),
             device,
             queue,
             plain,
             quantised: OnceLock::new(),
+            painted: OnceLock::new(),
             lost: Arc::default(),
             adapter,
             limits,
@@ -206,13 +208,14 @@ impl Gpu {
                 lost.get_or_insert(error.to_string());
             }
         }));
-        let plain = Kernels::compile(&device, sources, false)?;
+        let plain = Kernels::compile(&device, sources, For::Plain)?;
         let tick = timed.then(|| queue.get_timestamp_period());
         Ok(Self {
             device,
             queue,
             plain,
             quantised: OnceLock::new(),
+            painted: OnceLock::new(),
             lost,
             adapter: described,
             limits,
@@ -222,14 +225,14 @@ impl Gpu {
         })
     }
 
-    /// The passes for bricks of 16-bit values; compiled when they are first asked for.
-    pub(crate) fn kernels(&self, quantised: bool) -> Result<&Kernels, GpuError> {
-        if !quantised {
-            return Ok(&self.plain);
-        }
-        let made = self
-            .quantised
-            .get_or_init(|| Kernels::compile(&self.device, &sources(), true));
+    /// The passes for what is to be made; compiled when they are first asked for.
+    pub(crate) fn kernels(&self, made_for: For) -> Result<&Kernels, GpuError> {
+        let kept = match made_for {
+            For::Plain => return Ok(&self.plain),
+            For::Quantised => &self.quantised,
+            For::Painted => &self.painted,
+        };
+        let made = kept.get_or_init(|| Kernels::compile(&self.device, &sources(), made_for));
         made.as_ref().map_err(Clone::clone)
     }
 
@@ -262,7 +265,7 @@ impl Gpu {
         match minded {
             None => Ok(done),
             Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::Full),
-            Some(e) => Err(GpuError::Refused(e.to_string())),
+            Some(e) => Err(GpuError::refused(&e)),
         }
     }
 
@@ -295,9 +298,11 @@ impl Gpu {
     /// Runs what was submitted to its end.
     pub(crate) fn wait(&self) -> Result<(), GpuError> {
         self.check()?;
+        // What is software may be at it for minutes; a card that is has hung.
+        let patience = if self.adapter.software { 1200 } else { 120 };
         let waited = self.device.poll(wgpu::PollType::Wait {
             submission_index: None,
-            timeout: Some(std::time::Duration::from_secs(120)),
+            timeout: Some(std::time::Duration::from_secs(patience)),
         });
         self.check()?;
         match waited {
@@ -320,7 +325,7 @@ impl std::fmt::Debug for Gpu {
 }
 
 /// Real cards before software, discrete ones first.
-fn found() -> Vec<wgpu::Adapter> {
+pub(crate) fn found() -> Vec<wgpu::Adapter> {
     let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
@@ -337,7 +342,7 @@ fn found() -> Vec<wgpu::Adapter> {
     all
 }
 
-fn describe(adapter: &wgpu::Adapter) -> Adapter {
+pub(crate) fn describe(adapter: &wgpu::Adapter) -> Adapter {
     let info = adapter.get_info();
     Adapter {
         name: info.name,

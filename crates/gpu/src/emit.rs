@@ -188,7 +188,7 @@ impl GpuSolid {
             (binding::TIGHT_INDICES, &tight_indices),
             (binding::RENUMBERED, &renumbered),
         ];
-        let k = gpu.kernels(self.room.quantised)?;
+        let k = gpu.kernels(self.made_for)?;
         let mut recorder = Recorder::new(gpu, &self.buffers, None);
         recorder.pass("compact", |p| {
             let stage = Stage::default();

@@ -73,3 +73,12 @@ pub enum GpuError {
     #[error("the graphics card refused a pass: {0}")]
     Refused(String),
 }
+
+impl GpuError {
+    /// What the device said, in one line.
+    pub(crate) fn refused(said: &impl std::fmt::Display) -> Self {
+        let said = said.to_string();
+        let words: Vec<&str> = said.split_whitespace().collect();
+        Self::Refused(words.join(" "))
+    }
+}

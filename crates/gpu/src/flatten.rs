@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use midair_field::bake::Volume;
-use midair_field::{ConvexView, Form, LeafView, OutlineEdge, Program, TapeStep};
+use midair_field::{
+    ConvexView, Form, LeafView, OutlineEdge, PaintingView, Program, SkeletonView, TapeStep,
+};
 
 use crate::GpuError;
-use crate::layout::{DEEPEST, LEAF};
+use crate::layout::{DEEPEST, INK, LEAF, STROKE};
 
 /// Leaves, shapes, meshes and tape.
 pub(crate) struct Flat {
@@ -19,8 +21,10 @@ pub(crate) struct Flat {
     pub tape: Vec<u32>,
     /// The meshes, each once, in the order in which [`Flat::volumes`] has them.
     pub meshes: Vec<Arc<Volume>>,
-    /// The least |∇φ| of any leaf, where the form's own is 1.
+    /// The least |∇φ| of any leaf, where the form's own is 1; 0 of a painting, whose slope nobody knows.
     pub flattest: f32,
+    /// There is a painting among them.
+    pub painted: bool,
 }
 
 /// Words before a volume's table.
@@ -30,10 +34,17 @@ impl Flat {
     pub fn new(program: &Program) -> Result<Self, GpuError> {
         let mut tape = Vec::new();
         let (mut depth, mut deepest) = (0usize, 0);
+        let forms: Vec<LeafView> = program.leaves().collect();
         for step in program.tape() {
             tape.push(match step {
                 TapeStep::Load(leaf) => {
                     depth += 1;
+                    if let Form::Painting(Some(painting)) = &forms[leaf as usize].form {
+                        // Its chunks follow it, so that they are handed down as operands are.
+                        tape.push(leaf);
+                        tape.extend((0..painting.chunks.len() as u32).map(|c| INK << 29 | c));
+                        continue;
+                    }
                     leaf
                 }
                 TapeStep::Negate => 1 << 29,
@@ -52,7 +63,8 @@ impl Flat {
         let (mut leaves, mut shapes) = (Vec::new(), Vec::new());
         let mut places: HashMap<*const Volume, u32> = HashMap::new();
         let (mut meshes, mut words, mut flattest) = (Vec::new(), 0usize, f32::INFINITY);
-        for leaf in program.leaves() {
+        let mut painted = false;
+        for leaf in forms {
             flattest = flattest.min(leaf.flattest);
             let mut row = [0u32; LEAF];
             place(&leaf, &mut row);
@@ -63,7 +75,15 @@ impl Flat {
                     meshes.push((*volume).clone());
                     at
                 }),
-                Form::Painting => return Err(GpuError::Unsupported("a painting")),
+                Form::Painting(None) => {
+                    return Err(GpuError::Unsupported("a painting with solids as brushes"));
+                }
+                Form::Painting(Some(view)) => {
+                    (painted, flattest) = (true, 0.0);
+                    let at = shapes.len() as u32;
+                    painting(view, &mut shapes);
+                    at
+                }
                 form => {
                     let at = shapes.len() as u32;
                     shape(form, &mut row, &mut shapes);
@@ -82,6 +102,7 @@ impl Flat {
             tape,
             meshes,
             flattest,
+            painted,
         })
     }
 
@@ -128,7 +149,7 @@ fn kind(form: &Form) -> u32 {
         Form::Convex(_) => 9,
         Form::Helix(_) => 10,
         Form::Volume(_) => 11,
-        Form::Painting => 12,
+        Form::Painting(_) => 12,
     }
 }
 
@@ -172,7 +193,7 @@ fn shape(form: &Form, row: &mut [u32; LEAF], data: &mut Vec<u32>) {
         }
         Form::Revolution(edges) => outline(edges, data),
         Form::Convex(hull) => convex(hull, data),
-        Form::Volume(_) | Form::Painting => {}
+        Form::Volume(_) | Form::Painting(_) => {}
     }
 }
 
@@ -205,4 +226,54 @@ fn convex(hull: &ConvexView, data: &mut Vec<u32>) {
     }
     data.extend(hull.edges.as_flattened().iter().map(|x| x.to_bits()));
     data.extend(hull.walls.iter().flatten().flatten().map(|x| x.to_bits()));
+}
+
+/// Family, blend, least scale, and where strokes, chunks and segments begin; then these, then what polygons have.
+fn painting(view: &PaintingView, data: &mut Vec<u32>) {
+    const HEAD: usize = 10;
+    let strokes = HEAD;
+    let chunks = strokes + STROKE * view.strokes.len();
+    let segments = chunks + 9 * view.chunks.len();
+    let mut more = segments + 8 * view.segments.len();
+    let mut areas: Vec<u32> = Vec::new();
+    data.extend(view.family.map(f32::to_bits));
+    data.extend([view.blend, view.least].map(f32::to_bits));
+    data.extend([strokes, chunks, segments].map(|n| n as u32));
+    for s in &view.strokes {
+        let mut row = [0u32; STROKE];
+        row[1..5].copy_from_slice(
+            &[s.weight, f32::from(u8::from(s.erase)), s.scale, s.slope].map(f32::to_bits),
+        );
+        row[5] = s.to_local.is_some().into();
+        let m = s.to_local.unwrap_or(glam::Affine3A::IDENTITY);
+        for (to, from) in row[6..18].iter_mut().zip(m.to_cols_array()) {
+            *to = from.to_bits();
+        }
+        match &s.skeleton {
+            SkeletonView::Points => {}
+            SkeletonView::Line(numbers) => {
+                row[0] = 1;
+                row[18..26].copy_from_slice(&numbers.map(f32::to_bits));
+            }
+            SkeletonView::Polygon(frame, corners, edges) => {
+                row[0] = 2;
+                row[18..31].copy_from_slice(&frame.map(f32::to_bits));
+                let (at, end) = (more, more + 2 * corners.len());
+                row[31..35]
+                    .copy_from_slice(&[corners.len(), at, edges.len(), end].map(|n| n as u32));
+                areas.extend(corners.iter().flat_map(|c| c.to_array()).map(f32::to_bits));
+                areas.extend(edges.as_flattened().iter().map(|x| x.to_bits()));
+                more = end + 5 * edges.len();
+            }
+        }
+        data.extend(row);
+    }
+    for c in &view.chunks {
+        let ends = [c.bounds.min, c.bounds.max];
+        data.extend(ends.iter().flat_map(Vec3::to_array).map(f32::to_bits));
+        data.push(c.stroke);
+        data.extend(c.segments);
+    }
+    data.extend(view.segments.as_flattened().iter().map(|x| x.to_bits()));
+    data.append(&mut areas);
 }

@@ -11,6 +11,7 @@ pub(crate) struct Source {
 
 const COMMON: &str = include_str!("../shaders/common.wgsl");
 const SHAPE: &str = include_str!("../shaders/shape.wgsl");
+const PAINT: &str = include_str!("../shaders/paint.wgsl");
 const TAPE: &str = include_str!("../shaders/tape.wgsl");
 const RANGES: &str = include_str!("../shaders/ranges.wgsl");
 
@@ -18,7 +19,13 @@ const RANGES: &str = include_str!("../shaders/ranges.wgsl");
 pub(crate) const SOURCES: [Source; 6] = [
     Source {
         name: "cull.wgsl",
-        files: &[COMMON, SHAPE, TAPE, include_str!("../shaders/cull.wgsl")],
+        files: &[
+            COMMON,
+            SHAPE,
+            PAINT,
+            TAPE,
+            include_str!("../shaders/cull.wgsl"),
+        ],
     },
     Source {
         name: "touch.wgsl",
@@ -26,7 +33,13 @@ pub(crate) const SOURCES: [Source; 6] = [
     },
     Source {
         name: "fuse.wgsl",
-        files: &[COMMON, SHAPE, TAPE, include_str!("../shaders/fuse.wgsl")],
+        files: &[
+            COMMON,
+            SHAPE,
+            PAINT,
+            TAPE,
+            include_str!("../shaders/fuse.wgsl"),
+        ],
     },
     Source {
         name: "extract.wgsl",
@@ -75,7 +88,19 @@ pub(crate) struct Kernel {
     pub bindings: &'static [u32],
 }
 
-/// All passes of one kind of storage.
+/// What passes are compiled for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum For {
+    /// `f32`, no painting.
+    #[default]
+    Plain,
+    /// 16-bit values.
+    Quantised,
+    /// Paintings among the leaves.
+    Painted,
+}
+
+/// All passes of one kind.
 #[derive(Debug)]
 pub(crate) struct Kernels {
     pub cull: Kernel,
@@ -101,7 +126,7 @@ impl Kernels {
     pub fn compile(
         device: &wgpu::Device,
         sources: &[(String, String)],
-        quantised: bool,
+        made_for: For,
     ) -> Result<Self, GpuError> {
         use binding::*;
         let mut modules = Vec::with_capacity(sources.len());
@@ -110,7 +135,7 @@ impl Kernels {
         }
         let make = |module: usize, entry: &str, bindings: &'static [u32]| {
             let (name, module) = &modules[module];
-            kernel(device, name, module, entry, bindings, quantised)
+            kernel(device, name, module, entry, bindings, made_for)
         };
         Ok(Self {
             cull: make(
@@ -219,9 +244,13 @@ fn kernel(
     module: &wgpu::ShaderModule,
     entry: &str,
     bindings: &'static [u32],
-    quantised: bool,
+    made_for: For,
 ) -> Result<Kernel, GpuError> {
-    let constants = [("QUANTISED", f64::from(u8::from(quantised)))];
+    let is = |wanted| f64::from(u8::from(made_for == wanted));
+    let constants = [
+        ("QUANTISED", is(For::Quantised)),
+        ("PAINTED", is(For::Painted)),
+    ];
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry),

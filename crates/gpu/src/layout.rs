@@ -58,6 +58,10 @@ pub(crate) struct Block {
 
 /// Words of a leaf in `program`.
 pub(crate) const LEAF: usize = 32;
+/// Words of a painting's stroke.
+pub(crate) const STROKE: usize = 36;
+/// The instruction that names a chunk of the painting that was loaded last.
+pub(crate) const INK: u32 = 5;
 /// Words of a brick's record.
 pub(crate) const STRIDE: usize = 104;
 pub(crate) const ALIVE: usize = 8;

@@ -202,7 +202,7 @@ pub(crate) fn buffer(
     }
     gpu.check()?;
     match invalid {
-        Some(e) => Err(GpuError::Refused(e.to_string())),
+        Some(e) => Err(GpuError::refused(&e)),
         None => Ok(buffer),
     }
 }
@@ -220,7 +220,7 @@ pub(crate) fn read_back(
     gpu.wait()?;
     match told.recv() {
         Ok(Ok(())) => {}
-        Ok(Err(e)) => return Err(GpuError::Refused(e.to_string())),
+        Ok(Err(e)) => return Err(GpuError::refused(&e)),
         Err(e) => return Err(GpuError::Lost(e.to_string())),
     }
     let view = buffer.get_mapped_range(0..bytes);

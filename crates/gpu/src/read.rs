@@ -7,6 +7,7 @@ use midair_field::{BRICK, Brick, Grid};
 
 use crate::Gpu;
 use crate::error::GpuError;
+use crate::kernels::For;
 use crate::layout::{ALIVE, INSIDE, NEAR, NONE, STRIDE, Stage, counter};
 use crate::memory::{Room, buffer, read_back};
 use crate::passes::{Groups, Recorder};
@@ -163,7 +164,7 @@ impl GpuSolid {
         );
         queue.write_buffer(&b.values, 0, bytemuck::cast_slice(&values));
         queue.write_buffer(&b.bricks, 0, bytemuck::cast_slice(&records));
-        let k = gpu.kernels(false)?;
+        let k = gpu.kernels(For::Plain)?;
         let mut recorder = Recorder::new(gpu, &solid.buffers, None);
         recorder.pass("extract", |p| {
             let groups = Groups::Count((tables.len() as u32).div_ceil(64));

@@ -8,17 +8,28 @@ use midair_mesh::Aabb;
 use crate::Gpu;
 use crate::error::GpuError;
 use crate::flatten::Flat;
-use crate::kernels::Kernels;
+use crate::kernels::{For, Kernels};
 use crate::layout::{Block, Globals, Stage, counter, overflow};
 use crate::memory::{Buffers, Room, TIMES, read_back};
 use crate::passes::{Groups, Recorder};
 
 /// How a solid is kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolidOptions {
     /// Values as 16-bit multiples of 1e-4 steps instead of `f32`, at half the memory and up to half of that off,
     /// cut off 3.27 steps from the surface. Where φ is flat (very uneven scaling) they stay `f32`.
     pub quantised: bool,
+    /// The same where the surface is moved by no more than this for it, metres: by half a multiple over the least |∇φ|
+    /// of the solid's parts.
+    pub within: Option<f32>,
+}
+
+impl SolidOptions {
+    /// Whether a solid of this step is kept in 16 bits, the least |∇φ| of whose parts this is; 0 where it is not known.
+    pub(crate) fn quantises(&self, step: f32, flattest: f32) -> bool {
+        let moved = 0.5 * QUANTUM * step / flattest;
+        flattest >= FLATTEST && (self.quantised || self.within.is_some_and(|most| moved <= most))
+    }
 }
 
 /// How long the last making or update took.
@@ -51,6 +62,7 @@ pub struct GpuSolid {
     pub(crate) buffers: Arc<Buffers>,
     pub(crate) room: Room,
     options: SolidOptions,
+    pub(crate) made_for: For,
     program: Option<Program>,
     pub(crate) globals: Globals,
     pub(crate) counters: [u32; counter::COUNT],
@@ -63,6 +75,8 @@ pub struct GpuSolid {
 const MOST_CHUNKS: i64 = 4096;
 /// Steps around a crossing where values are there, as the processor has it.
 const AROUND: f32 = 2.0;
+/// Of 16-bit values, and what is too near to zero to be told from it; in steps.
+const QUANTUM: f32 = 1.0e-4;
 /// Where |∇φ| may be less than this, 16 bits are not enough.
 const FLATTEST: f32 = 0.25;
 
@@ -104,6 +118,7 @@ impl GpuSolid {
             gpu: gpu.clone(),
             room,
             options,
+            made_for: For::default(),
             program: None,
             globals: Globals::default(),
             counters: [0; counter::COUNT],
@@ -139,7 +154,7 @@ impl GpuSolid {
         let fits = flat.tape.len() as u32 <= self.room.tape / 4
             && flat.program.len() as u32 <= self.room.program
             && flat.volume_bytes() / 4 <= self.room.volumes.into()
-            && flat.flattest >= if self.room.quantised { FLATTEST } else { 0.0 };
+            && (!self.room.quantised || self.options.quantises(program.step(), flat.flattest));
         // Most of it anew is sooner made whole, and leaves nothing of what was there before.
         let volume = |b: &Aabb| f64::from(b.size().element_product());
         let much = volume(&dirty) > 0.5 * volume(&program.bounds());
@@ -284,8 +299,13 @@ impl GpuSolid {
         g.step = step;
         g.slack = 1.0e-3 * step + 4.0e-6 * reach;
         g.around = AROUND * step;
-        g.eps = 1.0e-4 * step;
+        g.eps = QUANTUM * step;
         g.shapes = flat.shapes;
+        self.made_for = match (flat.painted, self.room.quantised) {
+            (true, _) => For::Painted,
+            (false, true) => For::Quantised,
+            (false, false) => For::Plain,
+        };
         self.size_globals();
         let queue = &self.gpu.queue;
         queue.write_buffer(
@@ -372,7 +392,7 @@ impl GpuSolid {
         self.begin(program, flat, &first, level);
         self.write_numbers();
         let (gpu, buffers) = (self.gpu.clone(), self.buffers.clone());
-        let k = gpu.kernels(self.room.quantised)?;
+        let k = gpu.kernels(self.made_for)?;
         let times = self.times();
         let mut recorder = Recorder::new(&gpu, &buffers, times.as_ref());
         let hash = 4 * u64::from(self.room.hash());
@@ -407,7 +427,7 @@ impl GpuSolid {
         self.begin(program, flat, &chunks, 3);
         self.write_numbers();
         let (gpu, buffers) = (self.gpu.clone(), self.buffers.clone());
-        let k = gpu.kernels(self.room.quantised)?;
+        let k = gpu.kernels(self.made_for)?;
         let times = self.times();
         let mut recorder = Recorder::new(&gpu, &buffers, times.as_ref());
         let linked = self.counters[counter::CHUNKS];
@@ -501,7 +521,7 @@ impl GpuSolid {
         let refused = crate::wait::block_on(refused.pop());
         self.gpu.check()?;
         if let Some(e) = refused {
-            return Err(GpuError::Refused(e.to_string()));
+            return Err(GpuError::refused(&e));
         }
         let words = read_back(&self.gpu, &self.buffers.told, all)?;
         self.counters.copy_from_slice(&words[..counter::COUNT]);
@@ -614,7 +634,7 @@ fn guess(program: &Program, flat: &Flat, options: SolidOptions) -> Result<Room, 
     let slots = (near as u32).saturating_add(64);
     let len = flat.tape.len() as u32;
     Ok(Room {
-        quantised: options.quantised && flat.flattest >= FLATTEST,
+        quantised: options.quantises(step, flat.flattest),
         slots,
         chunks: slots / 12 + 160,
         tables: slots / 16 + 128,

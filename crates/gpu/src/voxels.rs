@@ -8,7 +8,7 @@ use midair_mesh::TriMesh;
 
 use crate::Gpu;
 use crate::error::GpuError;
-use crate::kernels::binding;
+use crate::kernels::{For, binding};
 use crate::layout::{Stage, counter};
 use crate::memory::{Room, buffer};
 use crate::passes::{Groups, Recorder};
@@ -116,7 +116,7 @@ impl GpuSolid {
         gpu.queue
             .write_buffer(&buffers.pages, info, bytemuck::cast_slice(&records));
         let extra = [(binding::CORNERS, &corners), (binding::VOXELS, &voxels)];
-        let k = gpu.kernels(false)?;
+        let k = gpu.kernels(For::Plain)?;
         let times = self.times();
         let mut recorder = Recorder::new(&gpu, &buffers, times.as_ref());
         let stage = Stage::default();

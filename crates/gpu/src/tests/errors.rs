@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use midair_field::{Node, Op, Primitive, Recipe};
+use midair_field::{Canvas, Node, Op, Primitive, Recipe, Skeleton, Stroke};
 
 use super::support::*;
 use crate::kernels::sources;
@@ -146,6 +146,15 @@ fn what_the_device_does_not_know_is_said() {
     }
     let refused = GpuSolid::make(&gpu, &compile(&deep, 0.01)).err().unwrap();
     assert!(matches!(refused, GpuError::Unsupported(_)), "{refused:?}");
+    // A solid as a brush.
+    let stroke = Stroke::new(Skeleton::Volume(ball(0.1)), 0.05);
+    let canvas = Canvas {
+        strokes: vec![stroke],
+        ..Canvas::default()
+    };
+    let painting = compile(&Recipe::new(Node::Canvas(canvas)), 0.01);
+    let refused = GpuSolid::make(&gpu, &painting).err().unwrap();
+    assert!(refused.to_string().contains("painting"), "{refused}");
     let far = operand(Op::Union, Vec3::X * 9.0e4, ball(0.1));
     let far = compile(&Recipe::new(Node::Solid(vec![far])), 0.01);
     assert_eq!(

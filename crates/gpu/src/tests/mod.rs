@@ -1,3 +1,4 @@
+mod emit;
 mod errors;
 mod growth;
 mod reference;

@@ -1,11 +1,13 @@
 //! One suite on both backends: the processor's kernels are the reference.
 
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Quat, Vec3};
 use midair_field::bake::Volume;
 use midair_field::{
-    FuseOptions, Grid, MeshSource, Node, Op, Operand, Placement, Primitive, Program, Recipe, fuse,
+    Canvas, FuseOptions, Grid, MeshSource, Node, Op, Operand, Placement, Primitive, Program,
+    Recipe, Skeleton, Stroke, fuse,
 };
 use midair_mesh::{Aabb, MeshHash};
 use midair_surface::Surface;
@@ -26,10 +28,93 @@ fn suite() -> Vec<(String, Program)> {
         .collect();
     all.push(("nested".into(), compile(&nested(), 0.01)));
     all.push(("baked meshes".into(), baked(0.012)));
+    for (name, canvas) in paintings() {
+        let recipe = Recipe::new(Node::Canvas(canvas));
+        all.push((name.into(), compile(&recipe, 0.01)));
+        let cut = vec![
+            operand(Op::Union, Vec3::new(0.05, 0.0, 0.0), recipe),
+            operand(
+                Op::Subtract,
+                Vec3::new(0.1, 0.0, 0.05),
+                Primitive::Sphere { radius: 0.08 },
+            ),
+        ];
+        let cut = Recipe::new(Node::Solid(cut));
+        all.push((format!("{name}, cut"), compile(&cut, 0.008)));
+    }
     for (name, recipe) in table_1() {
         all.push((name.into(), compile(&recipe, 0.01)));
     }
     all
+}
+
+/// Every skeleton alone and melted with others, erased, squeezed, and with every kind of blending.
+fn paintings() -> Vec<(&'static str, Canvas)> {
+    let led = |n: u32, radius: f32| {
+        let point = |i: u32| {
+            let t = i as f32 / n as f32;
+            let at = Vec3::new(0.2 * (5.0 * t).sin(), 0.3 * t - 0.15, 0.2 * (7.0 * t).cos());
+            at.extend(1.0 - 0.5 * t)
+        };
+        Stroke::new(Skeleton::Points((0..=n).map(point).collect()), radius)
+    };
+    let line = Stroke::new(
+        Skeleton::Line(Vec3::new(-0.2, 0.0, 0.1), Vec3::new(0.25, 0.1, 0.0)),
+        0.04,
+    );
+    let bay = [
+        (-0.2, -0.1),
+        (0.2, -0.15),
+        (0.05, 0.0),
+        (0.2, 0.15),
+        (-0.15, 0.1),
+    ];
+    let bay = bay.map(|(x, y)| Vec3::new(x, 0.3 * x, y));
+    let area = Stroke::new(Skeleton::Polygon(bay.into()), 0.05);
+    let point = Stroke::point(Vec3::new(0.1, 0.05, 0.02), 0.07);
+    // Felt over three steps and more: where less is felt than rounding, the scales of strokes are anybody's guess.
+    let wide = |s: &Stroke| Stroke {
+        radius: 0.075,
+        ..s.clone()
+    };
+    let with = |strokes: Vec<Stroke>, blend: f32| Canvas {
+        strokes,
+        blend,
+        ..Canvas::default()
+    };
+    let bite = Stroke {
+        erase: true,
+        weight: 1.3,
+        ..Stroke::point(Vec3::new(0.05, 0.1, 0.05), 0.06)
+    };
+    let squeezed = Stroke {
+        placement: Placement {
+            translation: Vec3::new(0.0, 0.1, 0.0),
+            rotation: Quat::from_rotation_z(0.4),
+            scale: Vec3::new(1.0, 0.8, 1.2),
+        },
+        ..area.clone()
+    };
+    let all = || {
+        vec![
+            led(60, 0.06),
+            wide(&line),
+            wide(&area),
+            bite.clone(),
+            wide(&point),
+            wide(&squeezed),
+        ]
+    };
+    vec![
+        ("a point", with(vec![point.clone()], 1.0)),
+        ("a led point", with(vec![led(100, 0.04)], 1.0)),
+        ("a line", with(vec![line.clone()], 1.0)),
+        ("an area", with(vec![area.clone()], 1.0)),
+        ("a squeezed area", with(vec![squeezed.clone()], 1.0)),
+        ("strokes that add up", with(all(), 1.0)),
+        ("strokes that melt", with(all(), 2.5)),
+        ("strokes that do not", with(all(), 20.0)),
+    ]
 }
 
 /// Meshes that were baked, turned, stretched and cut, beside an exact part.
@@ -91,7 +176,10 @@ fn fields_agree_with_the_processor() {
 #[test]
 fn quantised_fields_agree_to_half_a_quantum() {
     let Some(gpu) = gpu() else { return };
-    let options = SolidOptions { quantised: true };
+    let options = SolidOptions {
+        quantised: true,
+        ..SolidOptions::default()
+    };
     for (name, program) in suite() {
         let solid = GpuSolid::make_with(&gpu, &program, options).unwrap();
         let reference = on_processor(&program);
@@ -101,6 +189,72 @@ fn quantised_fields_agree_to_half_a_quantum() {
         assert_eq!(signs, 0, "{name}: signs");
         assert_sound(&solid.mesh().unwrap(), &name);
     }
+}
+
+/// 16 bits are chosen by the step and by how flat the parts are, and it is moved by no more than was allowed.
+#[test]
+fn bits_are_chosen_by_how_far_the_surface_may_be_moved() {
+    let Some(gpu) = gpu() else { return };
+    let within = |metres| SolidOptions {
+        within: Some(metres),
+        ..SolidOptions::default()
+    };
+    let squeezed = |y: f32| {
+        let torus = Primitive::Torus {
+            major: 0.25,
+            minor: 0.1,
+        };
+        let mut part = operand(Op::Union, Vec3::ZERO, torus);
+        part.placement.scale = Vec3::new(1.0, y, 1.0);
+        compile(&Recipe::new(Node::Solid(vec![part])), 0.02)
+    };
+    let chair = &table_1()[1].1;
+    for (name, program, most, narrow) in [
+        ("the chair", compile(chair, 0.01), 1.0e-5, true),
+        ("the chair, exactly", compile(chair, 0.01), 1.0e-7, false),
+        ("a flat ring", squeezed(0.5), 1.0e-5, true),
+        ("a flat ring, finer", squeezed(0.5), 1.5e-6, false),
+        ("a leaf of a ring", squeezed(0.1), 1.0e-3, false),
+    ] {
+        let solid = GpuSolid::make_with(&gpu, &program, within(most)).unwrap();
+        assert_eq!(solid.is_quantised(), narrow, "{name}");
+        let wide = GpuSolid::make(&gpu, &program).unwrap();
+        let (ours, theirs) = (solid.memory(), wide.memory());
+        assert_eq!(ours.bricks, theirs.bricks, "{name}");
+        if narrow {
+            assert_eq!(
+                theirs.used - ours.used,
+                1024 * u64::from(ours.bricks),
+                "{name}"
+            );
+        }
+        let step = program.step();
+        let (ours_mesh, theirs_mesh) = (solid.mesh().unwrap(), wide.mesh().unwrap());
+        assert_same(&ours_mesh, &theirs_mesh, step, name);
+        // Along an edge that grazes the surface a vertex moves further, with the surface.
+        let place: HashMap<_, usize> = (0..theirs_mesh.positions.len())
+            .map(|i| (edge_of(theirs_mesh.positions[i], step), i))
+            .collect();
+        let apart = ours_mesh.positions.iter().fold(0.0f32, |most, p| {
+            let i = place[&edge_of(*p, step)];
+            most.max(
+                (*p - theirs_mesh.positions[i])
+                    .dot(theirs_mesh.normals[i])
+                    .abs(),
+            )
+        });
+        println!(
+            "{name}: {apart:.1e} m apart, {} of {} bytes",
+            ours.used, theirs.used
+        );
+        assert!(apart <= most, "{name}: {apart}");
+    }
+    // An edit that asks for more than 16 bits gets it.
+    let mut solid = GpuSolid::make_with(&gpu, &squeezed(0.5), within(1.0e-5)).unwrap();
+    assert!(solid.is_quantised());
+    solid.update(&squeezed(0.1)).unwrap();
+    assert!(!solid.is_quantised());
+    assert_sound(&solid.mesh().unwrap(), "a leaf after a flat ring");
 }
 
 #[test]
@@ -175,6 +329,59 @@ fn an_update_gives_the_same_as_making() {
         let whole = GpuSolid::make(&gpu, program).unwrap();
         assert_same(&mesh, &whole.mesh().unwrap(), 0.01, &name);
     }
+}
+
+/// A stroke that is led on, another beside it, one that takes away, and back.
+#[test]
+fn a_painting_that_goes_on_is_as_one_made_anew() {
+    let Some(gpu) = gpu() else { return };
+    let led = |n: u32| {
+        let point = |i: u32| {
+            let t = 0.1 * i as f32;
+            Vec3::new(0.03 * i as f32 - 0.3, 0.1 * t.sin(), 0.1 * t.cos()).extend(1.0)
+        };
+        Stroke::new(Skeleton::Points((0..=n).map(point).collect()), 0.06)
+    };
+    let line = Stroke::new(
+        Skeleton::Line(Vec3::new(0.1, -0.2, 0.0), Vec3::splat(0.2)),
+        0.065,
+    );
+    let bite = Stroke {
+        erase: true,
+        ..Stroke::point(Vec3::new(-0.1, 0.05, 0.1), 0.07)
+    };
+    let painted = |strokes: Vec<Stroke>| {
+        let canvas = Canvas {
+            strokes,
+            blend: 2.0,
+            ..Canvas::default()
+        };
+        compile(&Recipe::new(Node::Canvas(canvas)), 0.01)
+    };
+    let steps = [
+        painted(vec![led(40)]),
+        painted(vec![led(42)]),
+        painted(vec![led(44), line.clone()]),
+        painted(vec![led(44), line.clone(), bite]),
+        painted(vec![led(44), line]),
+    ];
+    let mut solid = GpuSolid::make(&gpu, &steps[0]).unwrap();
+    let whole = solid.memory().bricks;
+    let mut edits = 0;
+    for (i, program) in steps.iter().enumerate().skip(1) {
+        solid.update(program).unwrap();
+        let again = solid.counters[crate::layout::counter::WORK];
+        println!("stroke {i}: {again} of {whole} bricks again");
+        edits += usize::from(again > 0 && again < whole);
+        let name = format!("stroke {i}");
+        let (most, signs, _) =
+            difference(&solid.grid().unwrap(), &on_processor(program), 3.0, 1e-4);
+        assert!(most <= 1e-4, "{name}: {most}");
+        assert_eq!(signs, 0, "{name}");
+        assert_sound(&solid.mesh().unwrap(), &name);
+    }
+    // The first may find that there is too little room.
+    assert!(edits >= 2, "{edits} changed a part of it");
 }
 
 /// Many edits at random places do not use up memory that is given back.

@@ -101,6 +101,8 @@ fn constants_agree() {
     };
     let words = [
         ("LEAF", LEAF as u32),
+        ("STROKE", STROKE as u32),
+        ("INK", INK),
         ("STRIDE", STRIDE as u32),
         ("ALIVE", ALIVE as u32),
         ("NONE", NONE),

@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Quat, Vec3};
 use midair_field::{Brick, Grid, Node, Op, Operand, Placement, Primitive, Program, Recipe};
 use midair_mesh::TriMesh;
 
@@ -37,105 +37,10 @@ pub fn compile(recipe: &Recipe, step: f32) -> Program {
     Program::compile(recipe, &Placement::IDENTITY, step, &()).expect("sound")
 }
 
-/// Every kind of primitive, the way the processor's own tests have them.
-pub fn zoo() -> Vec<Primitive> {
-    let star: Vec<Vec2> = (0..10)
-        .map(|i| {
-            let r = if i % 2 == 0 { 0.2 } else { 0.08 };
-            r * Vec2::from_angle(0.2 * std::f32::consts::PI * i as f32)
-        })
-        .collect();
-    let ring = |n: usize, r: f32, c: Vec2| -> Vec<Vec2> {
-        let angle = |i: usize| std::f32::consts::TAU * i as f32 / n as f32;
-        (0..n).map(|i| c + r * Vec2::from_angle(angle(i))).collect()
-    };
-    let corner = |i: usize| {
-        Vec3::new(
-            [-1.0, 1.0][i & 1],
-            [-1.0, 1.0][i >> 1 & 1],
-            [-1.0, 1.0][i >> 2],
-        )
-    };
-    let half = Vec3::new(0.2, 0.1, 0.15);
-    vec![
-        Primitive::Sphere { radius: 0.2 },
-        Primitive::Cuboid {
-            half,
-            rounding: 0.0,
-        },
-        Primitive::Cuboid {
-            half,
-            rounding: 0.05,
-        },
-        Primitive::Cylinder {
-            radius: 0.12,
-            half_height: 0.2,
-            rounding: 0.04,
-        },
-        Primitive::Frustum {
-            bottom: 0.2,
-            top: 0.05,
-            half_height: 0.15,
-        },
-        Primitive::Frustum {
-            bottom: 0.15,
-            top: 0.0,
-            half_height: 0.2,
-        },
-        Primitive::Torus {
-            major: 0.15,
-            minor: 0.05,
-        },
-        Primitive::Capsule {
-            radius: 0.08,
-            half_height: 0.12,
-        },
-        Primitive::Extrusion {
-            contours: vec![star],
-            half_height: 0.05,
-            rounding: 0.0,
-        },
-        Primitive::Extrusion {
-            contours: vec![ring(200, 0.2, Vec2::ZERO), ring(40, 0.1, Vec2::ZERO)],
-            half_height: 0.1,
-            rounding: 0.02,
-        },
-        Primitive::Revolution {
-            contours: vec![ring(30, 0.06, Vec2::new(0.13, 0.02))],
-            rounding: 0.0,
-        },
-        Primitive::Convex {
-            points: (0..8)
-                .map(|i| corner(i) * Vec3::new(0.1, 0.15, 0.2))
-                .collect(),
-        },
-        Primitive::Convex {
-            points: [
-                (0.2, -0.1, 0.2),
-                (-0.2, -0.1, 0.2),
-                (0.0, -0.1, -0.2),
-                (0.0, 0.2, 0.0),
-            ]
-            .map(Vec3::from)
-            .to_vec(),
-        },
-        Primitive::Helix {
-            major: 0.15,
-            minor: 0.03,
-            pitch: 0.1,
-            turns: 2.6,
-        },
-        Primitive::Helix {
-            major: 0.1,
-            minor: 0.02,
-            pitch: -0.6,
-            turns: 0.4,
-        },
-        Primitive::Ellipsoid {
-            half: Vec3::new(0.2, 0.05, 0.12),
-        },
-    ]
-}
+/// Every kind of primitive, as the processor's own tests have them.
+#[path = "../../../kernel/field/src/tests/zoo.rs"]
+mod zoo;
+pub(crate) use zoo::zoo;
 
 /// Nested, turned, stretched and mirrored: every operator on every side.
 pub fn nested() -> Recipe {
@@ -152,14 +57,14 @@ pub fn nested() -> Recipe {
     };
     let inner = Recipe::new(Node::Solid(vec![
         placed(Op::Union, 2, [0.0; 3], 0.3, [1.0; 3]),
-        placed(Op::Union, 6, [0.1, 0.1, 0.0], 1.0, [1.2; 3]),
+        placed(Op::Union, 7, [0.1, 0.1, 0.0], 1.0, [1.2; 3]),
         placed(Op::Subtract, 0, [0.15, 0.0, 0.05], 0.0, [0.7, 0.7, 0.7]),
     ]));
     Recipe::new(Node::Solid(vec![
-        placed(Op::Union, 4, [-0.1, 0.0, 0.0], 0.2, [1.0, 1.4, 0.8]),
+        placed(Op::Union, 5, [-0.1, 0.0, 0.0], 0.2, [1.0, 1.4, 0.8]),
         operand(Op::Union, Vec3::new(0.2, 0.05, 0.0), inner.clone()),
-        placed(Op::Subtract, 8, [0.0, 0.05, 0.0], 0.9, [1.0, 1.0, -2.0]),
-        placed(Op::Union, 13, [0.0, 0.2, 0.1], 0.5, [0.8; 3]),
+        placed(Op::Subtract, 9, [0.0, 0.05, 0.0], 0.9, [1.0, 1.0, -2.0]),
+        placed(Op::Union, 16, [0.0, 0.2, 0.1], 0.5, [0.8; 3]),
         operand(Op::Subtract, Vec3::new(-0.2, 0.1, 0.1), inner),
         placed(Op::Intersect, 0, [0.0, 0.05, 0.0], 0.0, [1.9, 1.7, 1.8]),
     ]))
@@ -232,7 +137,7 @@ pub fn assert_sound(mesh: &TriMesh, name: &str) {
 }
 
 /// The lattice edge that a vertex lies on, as a key: axis and node.
-fn edge_of(p: Vec3, step: f32) -> (usize, [i32; 3]) {
+pub fn edge_of(p: Vec3, step: f32) -> (usize, [i32; 3]) {
     let q = p / step;
     let off = (q - q.round()).abs();
     let axis = (0..3)

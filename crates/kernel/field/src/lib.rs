@@ -22,7 +22,8 @@ mod stretch;
 mod view;
 
 pub use canvas::{
-    CANVAS_THRESHOLD, Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke,
+    CANVAS_THRESHOLD, Canvas, CanvasError, ChunkView, HARD, MAX_POINTS, MAX_STROKES, PaintingView,
+    Skeleton, SkeletonView, Stroke, StrokeView,
 };
 pub use dirty::{changed_box, refuse, refuse_from};
 pub use fuse::{FuseError, FuseOptions, fuse};

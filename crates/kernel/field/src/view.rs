@@ -6,6 +6,7 @@ use glam::{Affine3A, UVec3, Vec3};
 
 use crate::Program;
 use crate::bake::Volume;
+use crate::canvas::PaintingView;
 use crate::leaf::{Leaf, Source};
 use crate::program::{Instr, singular};
 use crate::shape::Shape;
@@ -92,8 +93,8 @@ pub enum Form<'a> {
     Helix([f32; 5]),
     /// A baked mesh.
     Volume(&'a Arc<Volume>),
-    /// Strokes that melt into one surface.
-    Painting,
+    /// Strokes that melt into one surface; `None` where one of them is a solid.
+    Painting(Option<PaintingView>),
 }
 
 /// A convex polyhedron: its planes, edges, and the walls that stand on each face's edges.
@@ -139,7 +140,7 @@ impl Leaf {
             form: match self.source() {
                 Source::Shape(shape) => form_of(shape),
                 Source::Volume(volume) => Form::Volume(volume),
-                Source::Canvas(_) => Form::Painting,
+                Source::Canvas(painting) => Form::Painting(painting.view()),
             },
         }
     }

@@ -44,8 +44,6 @@ pub struct Made {
     pub warnings: Vec<String>,
     /// Field and surface of a painting, from which it is made again where a stroke changed it.
     pub solid: Option<Arc<Solid>>,
-    /// The card made it.
-    pub(crate) on_card: bool,
     /// Bytes held, about.
     pub bytes: usize,
 }
@@ -138,7 +136,6 @@ impl Made {
             extract_ms: 0.0,
             warnings: Vec::new(),
             solid: None,
-            on_card: false,
             bytes,
             places: None,
             pieces: std::sync::Mutex::default(),
@@ -236,7 +233,6 @@ impl Running {
                             let mut made = Made::from_mesh(Arc::new(on_card.mesh));
                             made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
                             made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
-                            made.on_card = true;
                             return Ok(made);
                         }
                         Asked::Processor(why) => line = why,

@@ -1,5 +1,5 @@
 //! What the card made is drawn where it lies: copied, on the card, into a mesh with room to spare, once a frame before
-//! any camera looks. Materials, shadows, outlines and the headset's two eyes see a mesh like any other.
+//! any camera looks. Materials, shadows and outlines see a mesh like any other.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -160,16 +160,9 @@ pub(super) fn bare(entity: &mut EntityCommands) {
 pub struct CardWrites {
     asked: Vec<Write>,
     written: Arc<AtomicUsize>,
-    /// Somebody draws.
-    can: bool,
 }
 
 impl CardWrites {
-    /// Whether there is somebody who draws.
-    pub fn can_draw(&self) -> bool {
-        self.can
-    }
-
     /// How many surfaces were drawn without passing through main memory.
     pub fn written(&self) -> usize {
         self.written.load(Ordering::Relaxed)
@@ -203,7 +196,6 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(ExtractSchedule, extract)
         // Once a frame, not once an eye; before the first camera draws.
         .add_systems(RenderGraph, write.before(camera_driver));
-    app.world_mut().resource_mut::<CardWrites>().can = true;
 }
 
 fn extract(mut main: ResMut<MainWorld>, mut pending: ResMut<Pending>) {

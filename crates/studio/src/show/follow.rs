@@ -87,6 +87,7 @@ impl Showing {
         (writes, drawn, meshes): (&mut CardWrites, &mut Drawn, &mut Assets<Mesh>),
         entity: &mut EntityCommands,
     ) {
+        let lies_there = surface.is_some();
         if let Some(surface) = surface {
             self.draw_early((key, surface), recipe, writes, entity);
         }
@@ -97,7 +98,7 @@ impl Showing {
         }
         // The first is shared with all that look like it; what then changes has a mesh of its own.
         let changed = *self.first.get_or_insert(key.recipe) != key.recipe;
-        if made.on_card && changed && writes.can_draw() {
+        if lies_there && changed {
             let mesh = CardMesh::new(&made.mesh, meshes);
             mesh.seen(around).worn_by(entity);
             self.card = Some(OnCard {

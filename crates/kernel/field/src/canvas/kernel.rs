@@ -9,6 +9,9 @@ use glam::Vec2;
 /// The threshold of the surface: inside is where the potential is above (3DBrushVR §4.2.1).
 pub const T: f32 = 0.5;
 
+/// Up to this a potential of a polygon is rounding.
+const NOTHING: f32 = 4.0e-6;
+
 /// What the reach of a canvas makes of the family.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Family {
@@ -100,7 +103,8 @@ impl Family {
     pub fn polygon_of(&self, sum: f32, angle: f32, h2: f32) -> f32 {
         let a = 1.0 - h2;
         let a = if a > 0.0 { a } else { 0.0 };
-        let f = self.polygon * (sum + a * a * a * (1.0 / 6.0) * angle);
+        // What rounding leaves of the angles where no part is felt is nothing.
+        let f = self.polygon * (sum + a * a * a * (1.0 / 6.0) * angle) - NOTHING;
         if f > 0.0 { f } else { 0.0 }
     }
 
@@ -153,6 +157,12 @@ impl Edge {
             })
         };
         (0..n).filter_map(one).collect()
+    }
+
+    /// Start, unit direction, length.
+    pub fn numbers(&self) -> [f32; 5] {
+        let (a, b) = (self.from, self.along);
+        [a.x, a.y, b.x, b.y, self.length]
     }
 
     /// What it adds to a place at (x, y): the integral along the part of it that is felt, and the
