@@ -4,8 +4,7 @@ use glam::Vec3;
 use midair_mesh::Aabb;
 use rustc_hash::FxHashSet;
 
-use crate::fuse::{Still, bricks_touching, fuse_within};
-use crate::grid::cube;
+use crate::fuse::{Cube, Still, bricks_touching, fuse_within};
 use crate::leaf::Leaf;
 use crate::program::{Instr, Outline};
 use crate::{BrickCoord, FuseError, FuseOptions, Grid, Op, Program};
@@ -137,6 +136,31 @@ fn strokes_changed(before: &Program, after: &Program) -> Option<(Range<usize>, R
     (olds.len() + news.len() <= FEW).then_some((olds, news))
 }
 
+/// Cubes of bricks, each looked up by its size: a large one is one entry.
+struct Kept {
+    cubes: FxHashSet<(BrickCoord, u32)>,
+    levels: Vec<u32>,
+}
+
+impl Kept {
+    fn of(cubes: &[Cube]) -> Self {
+        let level = |side: i32| side.trailing_zeros();
+        let cubes: FxHashSet<_> = cubes
+            .iter()
+            .map(|&(first, side)| (first >> level(side), level(side)))
+            .collect();
+        let mut levels: Vec<u32> = cubes.iter().map(|c| c.1).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        Self { cubes, levels }
+    }
+
+    fn holds(&self, c: BrickCoord) -> bool {
+        let within = |&level: &u32| self.cubes.contains(&(c >> level, level));
+        self.levels.iter().any(within)
+    }
+}
+
 fn renew(
     grid: &mut Grid,
     program: &Program,
@@ -152,17 +176,14 @@ fn renew(
     }
     let (low, high) = bricks_touching(dirty, program.step());
     let (mut fresh, kept) = fuse_within(program, Some((low, high)), still, options)?;
-    let kept: FxHashSet<BrickCoord> = kept
-        .into_iter()
-        .flat_map(|(first, side)| cube(first, side))
-        .collect();
+    let kept = Kept::of(&kept);
     let mut changed = Vec::new();
     if other {
         changed.extend(grid.bricks().map(|(c, _)| c));
         *grid = Grid::new(program.step());
     }
     for c in grid.coords_within(low, high) {
-        if fresh.brick(c).is_none() && !kept.contains(&c) {
+        if fresh.brick(c).is_none() && !kept.holds(c) {
             grid.set(c, None);
             changed.push(c);
         }
