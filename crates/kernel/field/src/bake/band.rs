@@ -25,8 +25,6 @@ pub(super) const BLOCK: usize = SIDE * SIDE * SIDE;
 pub(super) struct Block {
     pub triangle: [u32; BLOCK],
     pub distance: [f32; BLOCK],
-    /// From the closest point to the node, of length 1, where the node hands its triangle on.
-    pub away: [Vec3; BLOCK],
 }
 
 /// The nodes of all near bricks, by blocks. A block holds the nodes at the low corner of the brick
@@ -115,7 +113,6 @@ impl Band {
         let empty = Block {
             triangle: [NONE; BLOCK],
             distance: [f32::INFINITY; BLOCK],
-            away: [Vec3::ZERO; BLOCK],
         };
         self.blocks = (0..self.places.len())
             .into_par_iter()
@@ -287,6 +284,34 @@ fn near_bricks(
 }
 
 fn splat_block(
+    frame: &Frame,
+    first: UVec3,
+    block: &mut Block,
+    ids: &[u32],
+    triangles: &[Triangle],
+) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has AVX2, as just asked.
+        return unsafe { splat_block_avx2(frame, first, block, ids, triangles) };
+    }
+    splat_block_any(frame, first, block, ids, triangles);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn splat_block_avx2(
+    frame: &Frame,
+    first: UVec3,
+    block: &mut Block,
+    ids: &[u32],
+    triangles: &[Triangle],
+) {
+    splat_block_any(frame, first, block, ids, triangles);
+}
+
+#[inline(always)]
+fn splat_block_any(
     frame: &Frame,
     first: UVec3,
     block: &mut Block,

@@ -3,6 +3,7 @@
 mod band;
 mod boundary;
 mod cache;
+mod eight;
 mod frame;
 mod lids;
 mod options;

@@ -25,12 +25,11 @@ impl Default for BakeOptions {
 }
 
 impl BakeOptions {
-    /// The default padding with another step, metres.
+    /// Another step, metres, and the default's ten steps around the mesh: no more than [`PADDING`], and
+    /// enough for what melts into a mesh of [`LONGEST_SIDE`] at any step.
     pub fn with_step(step: f32) -> Self {
-        Self {
-            step,
-            ..Self::default()
-        }
+        let padding = (PADDING / STEP * step).clamp(0.4 * PADDING, PADDING);
+        Self { step, padding }
     }
 }
 

@@ -2,10 +2,11 @@ use glam::{Mat3, Vec3};
 use midair_mesh::Aabb;
 use rayon::prelude::*;
 
+use super::eight::{EIGHT, Eight};
 use super::triangle::Triangle;
 
 /// Triangles in a leaf, and children of a node.
-const LEAF: usize = 8;
+const LEAF: usize = EIGHT;
 const FAN: usize = 4;
 /// A node is taken as one far source when the point is this many radii away
 /// (Barill et al. 2018, §4: 2 keeps the error under a hundredth).
@@ -16,6 +17,7 @@ const BETA: f32 = 2.0;
 pub(super) struct Tree<'a> {
     triangles: &'a [Triangle],
     order: Vec<u32>,
+    leaves: Vec<Eight>,
     /// Leaves first, then each level of parents, the root last.
     nodes: Vec<Node>,
     /// Where each level begins in `nodes`, leaves first.
@@ -57,6 +59,10 @@ impl<'a> Tree<'a> {
             .par_chunks(LEAF)
             .map(|leaf| Node::leaf(leaf, triangles))
             .collect();
+        let leaves = order
+            .par_chunks(LEAF)
+            .map(|leaf| Eight::new(leaf, triangles))
+            .collect();
         let mut levels = vec![0];
         let mut begin = 0;
         while nodes.len() - begin > 1 {
@@ -68,6 +74,7 @@ impl<'a> Tree<'a> {
         Self {
             triangles,
             order,
+            leaves,
             nodes,
             levels,
         }
@@ -92,7 +99,9 @@ impl<'a> Tree<'a> {
     pub fn closest(&self, p: Vec3, guess: Option<u32>) -> (f32, u32) {
         let mut best = (f32::INFINITY, u32::MAX);
         if let Some(t) = guess {
-            best = (self.triangles[t as usize].distance_squared(p), t);
+            // It is met again among the others, and there perhaps differs by rounding.
+            let d = self.triangles[t as usize].distance_squared(p);
+            best.0 = d * 1.000_1 + f32::MIN_POSITIVE;
         }
         let mut stack = [(0.0f32, 0u32, 0u32); 64];
         let mut top = 1;
@@ -108,8 +117,8 @@ impl<'a> Tree<'a> {
                 continue;
             }
             if level == 0 {
-                for &t in self.leaf(node as usize) {
-                    let d = self.triangles[t as usize].distance_squared(p);
+                let found = self.leaves[node as usize].distances(p);
+                for (&t, d) in self.leaf(node as usize).iter().zip(found) {
                     if (d, t) < best {
                         best = (d, t);
                     }
@@ -128,7 +137,10 @@ impl<'a> Tree<'a> {
             // The nearest child is opened first.
             stack[begin..top].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         }
-        best
+        match guess {
+            Some(t) if best.1 == u32::MAX => (self.triangles[t as usize].distance_squared(p), t),
+            _ => best,
+        }
     }
 
     /// The generalised winding number of the triangles around `p`.

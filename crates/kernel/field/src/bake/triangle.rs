@@ -11,7 +11,7 @@ pub(super) struct Triangle {
     /// Unit normal; zero where the triangle is too thin to have one.
     pub n: Vec3,
     /// One over the squared length of the side that starts at each corner; 0 for no length.
-    inverse: [f32; 3],
+    pub inverse: [f32; 3],
 }
 
 impl Triangle {
@@ -32,8 +32,9 @@ impl Triangle {
         Self { v, n, inverse }
     }
 
+    /// Whether it is too thin to have a normal.
     #[inline]
-    fn thin(&self) -> bool {
+    pub fn thin(&self) -> bool {
         self.n == Vec3::ZERO
     }
 
@@ -72,7 +73,7 @@ impl Triangle {
 
     /// Squared distances from the eight points (`x[i]`, `y`, `z`). Straight-line code over lanes,
     /// so that the compiler keeps it in vector registers.
-    #[inline]
+    #[inline(always)]
     pub fn distance_squared_row(&self, x: &[f32; 8], y: f32, z: f32) -> [f32; 8] {
         let mut nearest = [f32::INFINITY; 8];
         let mut side = [f32::NEG_INFINITY; 8];

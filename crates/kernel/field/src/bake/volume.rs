@@ -3,7 +3,7 @@ use midair_mesh::Aabb;
 use rayon::prelude::*;
 
 use super::BakeError;
-use super::frame::{Frame, NODES, SIDE};
+use super::frame::{Frame, NODES, SIDE, at};
 use super::sample::slope_of;
 use crate::VolumeView;
 
@@ -36,7 +36,24 @@ pub struct Volume {
     pub(super) table: Vec<u32>,
     /// The least and greatest value of each brick, and how much it changes per cell at most.
     pub(super) ranges: Vec<[f32; 3]>,
+    /// The least and greatest value of each [`GROUP`]³ bricks.
+    pub(super) groups: Vec<[f32; 2]>,
     pub(super) values: Vec<f32>,
+}
+
+/// Bricks along the side of a group.
+const GROUP: u32 = 4;
+
+/// What groups of bricks come to.
+pub(super) fn groups_of(bricks: UVec3, ranges: &[[f32; 3]]) -> Vec<[f32; 2]> {
+    let n = bricks.map(|b| b.div_ceil(GROUP));
+    let mut groups = vec![[f32::INFINITY, f32::NEG_INFINITY]; n.element_product() as usize];
+    for (i, r) in ranges.iter().enumerate() {
+        let g = at(bricks, i) / GROUP;
+        let group = &mut groups[(g.x + n.x * (g.y + n.y * g.z)) as usize];
+        *group = [group[0].min(r[0]), group[1].max(r[1])];
+    }
+    groups
 }
 
 impl Volume {
@@ -103,11 +120,12 @@ impl Volume {
                 fill(b, part);
                 summary_of(part)
             })
-            .collect();
+            .collect::<Vec<_>>();
         Ok(Self {
             frame,
             solid,
             table,
+            groups: groups_of(frame.bricks(), &ranges),
             ranges,
             values,
         })
@@ -193,13 +211,30 @@ impl Volume {
             .as_uvec3()
             .min(last);
         let n = f.bricks();
+        let groups = n.map(|b| b.div_ceil(GROUP));
         let (mut least, mut greatest) = (f32::INFINITY, f32::NEG_INFINITY);
-        for z in lo.z..=hi.z {
-            for y in lo.y..=hi.y {
-                let row = (n.x * (y + n.y * z)) as usize;
-                for r in &self.ranges[row + lo.x as usize..=row + hi.x as usize] {
-                    least = least.min(r[0]);
-                    greatest = greatest.max(r[1]);
+        let (low, high) = (lo / GROUP, hi / GROUP);
+        let side = high - low + 1;
+        for i in 0..side.element_product() as usize {
+            let g = low + at(side, i);
+            let [a, b] = self.groups[(g.x + groups.x * (g.y + groups.y * g.z)) as usize];
+            if a >= least && b <= greatest {
+                continue;
+            }
+            let first = g * GROUP;
+            let end = (first + (GROUP - 1)).min(last);
+            let (from, to) = (first.max(lo), end.min(hi));
+            if from == first && to == end {
+                (least, greatest) = (least.min(a), greatest.max(b));
+                continue;
+            }
+            for z in from.z..=to.z {
+                for y in from.y..=to.y {
+                    let row = (n.x * (y + n.y * z)) as usize;
+                    for r in &self.ranges[row + from.x as usize..=row + to.x as usize] {
+                        least = least.min(r[0]);
+                        greatest = greatest.max(r[1]);
+                    }
                 }
             }
         }

@@ -31,11 +31,11 @@ pub fn bake(
     progress: &Progress,
 ) -> Result<Volume, BakeError> {
     let &BakeOptions { step, padding } = options;
-    if !(padding.is_finite() && padding >= 0.0) {
-        return Err(BakeError::Padding(padding));
-    }
     if !(step.is_finite() && step > 0.0) {
         return Err(BakeError::Step(step));
+    }
+    if !(padding.is_finite() && padding >= 0.0) {
+        return Err(BakeError::Padding(padding));
     }
     progress.check()?;
     let closed = repair::close(mesh, 2.0 * step, progress)?;
