@@ -3,7 +3,7 @@
 import argparse, json, os, re, shlex, subprocess, sys, tempfile, time
 
 NAMES = ["surface/sphere/256", "surface/sphere-dense/256", "surface/gyroid/256",
-         "surface/dirty-64-in-256", "fuse/5x64-in-256", "bake/torus-25k"]
+         "surface/dirty-64-in-256", "fuse/5x64-in-256", "bake/torus-25k", "brush/raw-torus"]
 
 
 def flying_edges(threads):
@@ -44,6 +44,38 @@ def flying_edges(threads):
     print(json.dumps(out))
 
 
+def blender():
+    """Blender's voxel remesh of the torus of 25,600 triangles at 2/128; prints one JSON line [ms, ...]."""
+    import bpy
+    from math import cos, pi, sin
+    around, across, large, small = 160, 80, 0.6, 0.25
+    at = lambda i, j: (i % around) * across + j % across
+    vertices, faces = [], []
+    for i in range(around):
+        a = 2 * pi * i / around
+        for j in range(across):
+            b = 2 * pi * j / across
+            out = large + small * cos(b)
+            vertices.append((out * cos(a), out * sin(a), small * sin(b)))
+            faces += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    mesh = bpy.data.meshes.new("torus")
+    mesh.from_pydata(vertices, [], faces)
+    mesh.update()
+    torus = bpy.data.objects.new("torus", mesh)
+    bpy.context.scene.collection.objects.link(torus)
+    remesh = torus.modifiers.new("remesh", "REMESH")
+    remesh.mode = "VOXEL"
+    times = []
+    for i in range(8):
+        remesh.voxel_size = 2 / 128 * (1 + 1e-6 * i)  # Else it would be remembered.
+        begun = time.perf_counter()
+        bpy.context.view_layer.update()
+        made = torus.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        assert len(made.data.polygons) > 10_000
+        times.append(1e3 * (time.perf_counter() - begun))
+    print("\n" + json.dumps(times[1:]))
+
+
 def main():
     parser = argparse.ArgumentParser()
     for name in ("ours", "loop", "parry", "prefix"):
@@ -51,7 +83,11 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--flying-edges", action="store_true")
+    parser.add_argument("--blender", action="store_true")
+    parser.add_argument("--blender-python", default=sys.executable)
     args = parser.parse_args()
+    if args.blender:
+        return blender()
     if args.flying_edges:
         return flying_edges(args.threads)
 
@@ -81,6 +117,13 @@ def main():
             times.sort()
             note("FlyingEdges " + kind, times[len(times) // 2], times[0])
 
+    def remesh():
+        pinned = ["taskset", "-c", ",".join(map(str, sorted(os.sched_getaffinity(0))[:args.threads]))]
+        text = call(*pinned, args.blender_python, __file__, "--blender")
+        times = sorted(json.loads(text.splitlines()[-1])) if text.strip() else []
+        if times:
+            note("Blender voxel remesh", times[len(times) // 2], times[0])
+
     def loop():
         if os.path.exists(args.loop):
             row = rf"fuse bbox-clip K=5 64\^3 -> 256\^3 {args.threads}thr ([\d.]+) ms"
@@ -94,7 +137,7 @@ def main():
                 note("parry3d", float(median), float(best))
 
     for i in range(args.rounds):
-        ours(), vtk(), loop()
+        ours(), vtk(), loop(), remesh()
         if i == 0:
             parry()  # Takes as long as all the others together.
 
@@ -110,6 +153,7 @@ def main():
         ("fuse/5x64-in-256", "clipped loop in C", 0.15),
         ("bake/torus-25k/128", "parry3d", 0.06),
         ("bake/torus-25k-cube/128", "parry3d", None),
+        ("brush/raw-torus/128", "Blender voxel remesh", 0.1),
     ]
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     print(f"{args.threads} threads, best of {args.rounds} rounds, load {load:.1f}; ms")

@@ -6,11 +6,12 @@
 # PEERS is a folder with fuse.c (the clipped loop in C), rust/ (parry3d) and bench_mvc.py (scipy). VTK and
 # scipy are taken from the Python that PYTHON names; without it, or without one of the others, those rows are left out.
 #
+#   BLENDER   a Python with bpy, Blender as a module                          [PYTHON]
 #   PYTHON    with vtk and numpy           [PEER_CACHE/venv/bin/python, else python3]
 #   PREFIX    put before what is measured, as 'chrt -r 1' on a busy machine
 #   THREADS   for both sides                                   [what nproc says, at most 2]
 set -euo pipefail
-[ $# -ge 1 ] || { sed -n '2,12s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,13s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 peers=$(cd "$1" && pwd)
 rounds=${2:-3}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -35,4 +36,4 @@ else
   echo "no scipy: fair curves are left out" >&2
 fi
 exec "$python" "$here/peers.py" --ours "$target/debug/examples/bench" --loop "$cache/fuse" \
-  --parry "$cache/target/release/rbench" --rounds "$rounds" --threads "$threads" --prefix "${PREFIX:-}"
+  --parry "$cache/target/release/rbench" --blender-python "${BLENDER:-$python}" --rounds "$rounds" --threads "$threads" --prefix "${PREFIX:-}"

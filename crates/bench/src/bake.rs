@@ -57,7 +57,7 @@ impl Subject {
 }
 
 /// A torus around z: `around` × `across` quads, each two triangles.
-fn torus(around: u32, across: u32, major: f32, minor: f32) -> TriMesh {
+pub(crate) fn torus(around: u32, across: u32, major: f32, minor: f32) -> TriMesh {
     let angle = |i: u32, n: u32| i as f32 / n as f32 * std::f32::consts::TAU;
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..around {

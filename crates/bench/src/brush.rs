@@ -3,7 +3,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use glam::{Quat, Vec3, Vec4};
-use midair_field::bake::{BakeOptions, Progress, Volume, bake};
+use midair_field::bake::{BakeOptions, LONGEST_SIDE, Progress, Volume, bake};
 use midair_field::{Canvas, MeshSource, Node, Placement, Recipe, Skeleton, Stroke, local_step};
 use midair_mesh::{Aabb, MeshHash, TriMesh};
 use midair_solid::Solid;
@@ -91,6 +91,8 @@ pub(crate) enum Subject {
     Edit(Shape, u32),
     /// A mesh never seen before becomes a surface: voxelise, smooth, extract.
     Raw(Shape, u32),
+    /// The same of a torus of 25,600 triangles, half as large as Blender has it beside it.
+    RawTorus(u32),
     /// One more point of a painting of ten thousand.
     Point(u32),
     /// A line joins a painting.
@@ -110,6 +112,7 @@ impl Subject {
         for shape in Shape::ALL {
             all.push(Self::Raw(shape, 128));
         }
+        all.push(Self::RawTorus(128));
         all.extend([256, 512].map(Self::Point));
         all.extend([Self::Line(256), Self::Polygon(256), Self::Erase(256)]);
         all
@@ -119,6 +122,7 @@ impl Subject {
         match self {
             Self::Edit(shape, n) => format!("brush/{}/{n}", shape.name()),
             Self::Raw(shape, n) => format!("brush/raw-{}/{n}", shape.name()),
+            Self::RawTorus(n) => format!("brush/raw-torus/{n}"),
             Self::Point(n) => format!("brush/point-stroke/{n}"),
             Self::Line(n) => format!("brush/line/{n}"),
             Self::Polygon(n) => format!("brush/polygon/{n}"),
@@ -138,6 +142,7 @@ impl Subject {
     fn step(self) -> f32 {
         let (Self::Edit(_, n)
         | Self::Raw(_, n)
+        | Self::RawTorus(n)
         | Self::Point(n)
         | Self::Line(n)
         | Self::Polygon(n)
@@ -184,16 +189,16 @@ fn with(mut canvas: Canvas, stroke: Stroke) -> Recipe {
     Recipe::new(Node::Canvas(canvas))
 }
 
-/// A brush held a little turned, so that no lattice suits it.
-fn held(bounds: &Aabb) -> Placement {
+/// A brush held a little turned, so that no lattice suits it, its longest side `size` metres.
+fn held(bounds: &Aabb, size: f32) -> Placement {
     Placement {
         translation: Vec3::new(0.05, 0.02, 0.01),
         rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.2, 0.5, 0.1),
-        scale: Vec3::splat(BRUSH / bounds.size().max_element()),
+        scale: Vec3::splat(size / bounds.size().max_element()),
     }
 }
 
-fn volume_stroke(mesh: &TriMesh) -> Stroke {
+fn volume_stroke(mesh: &TriMesh, size: f32) -> Stroke {
     let bounds = mesh.bounds();
     let recipe = Recipe::new(Node::Mesh {
         mesh: MeshHash([0; 32]),
@@ -201,13 +206,13 @@ fn volume_stroke(mesh: &TriMesh) -> Stroke {
     });
     let radius = 0.08 * bounds.size().max_element();
     Stroke {
-        placement: held(&bounds),
+        placement: held(&bounds, size),
         ..Stroke::new(Skeleton::Volume(recipe), radius)
     }
 }
 
-fn baked(mesh: &TriMesh, step: f32) -> Result<One, BenchError> {
-    let scale = held(&mesh.bounds()).scale.x;
+fn baked(mesh: &TriMesh, size: f32, step: f32) -> Result<One, BenchError> {
+    let scale = held(&mesh.bounds(), size).scale.x;
     let options = BakeOptions::with_step(local_step(step, scale));
     Ok(One(Some(Arc::new(bake(mesh, &options, &Progress::new())?))))
 }
@@ -230,13 +235,18 @@ pub(crate) fn run(subject: Subject, budget: &Budget) -> Result<(Times, Details),
     let mut details = Details::new();
     let mut meshes = One(None);
     let (before, after) = match subject {
-        Subject::Raw(shape, _) => return raw(shape, step, budget),
+        Subject::Raw(shape, _) => return raw(&shape.mesh()?, BRUSH, step, budget),
+        Subject::RawTorus(_) => {
+            // As an import scales it; 1.7 m of 2/128 m steps are 0.85 m of 1/128 m.
+            let torus = crate::bake::torus(160, 80, 0.6, 0.25);
+            return raw(&torus.normalised(LONGEST_SIDE).0, 0.85, step, budget);
+        }
         Subject::Edit(shape, _) => {
             let mesh = shape.mesh()?;
-            meshes = baked(&mesh, step)?;
+            meshes = baked(&mesh, BRUSH, step)?;
             details.insert("mesh triangles".into(), json!(mesh.triangles.len()));
             let before = Recipe::new(Node::Canvas(painting()));
-            (before, with(painting(), volume_stroke(&mesh)))
+            (before, with(painting(), volume_stroke(&mesh, BRUSH)))
         }
         Subject::Point(_) => {
             let all = |n| {
@@ -293,14 +303,18 @@ pub(crate) fn run(subject: Subject, budget: &Budget) -> Result<(Times, Details),
 }
 
 /// From triangles to a closed smooth surface, nothing kept from before.
-fn raw(shape: Shape, step: f32, budget: &Budget) -> Result<(Times, Details), BenchError> {
-    let mesh = shape.mesh()?;
+fn raw(
+    mesh: &TriMesh,
+    size: f32,
+    step: f32,
+    budget: &Budget,
+) -> Result<(Times, Details), BenchError> {
     let go = AtomicBool::new(false);
-    let recipe = with(Canvas::default(), volume_stroke(&mesh));
+    let recipe = with(Canvas::default(), volume_stroke(mesh, size));
     let mut triangles = 0;
     let times = repeat(budget, || {
         let started = Instant::now();
-        let meshes = baked(&mesh, step)?;
+        let meshes = baked(mesh, size, step)?;
         let voxels = started.elapsed();
         let solid = Solid::make(&recipe, &Placement::IDENTITY, step, &meshes, &go)?;
         let total = started.elapsed();
@@ -339,10 +353,10 @@ mod tests {
     fn an_edit_gives_what_making_it_anew_gives() {
         let mesh = Shape::Wings.mesh().unwrap();
         let step = SPACE / 64.0;
-        let meshes = baked(&mesh, step).unwrap();
+        let meshes = baked(&mesh, BRUSH, step).unwrap();
         let (go, at) = (AtomicBool::new(false), Placement::IDENTITY);
         let before = Recipe::new(Node::Canvas(painting()));
-        let after = with(painting(), volume_stroke(&mesh));
+        let after = with(painting(), volume_stroke(&mesh, BRUSH));
         let base = Solid::make(&before, &at, step, &meshes, &go).unwrap();
         let edited = base.remake(&after, &at, step, &meshes, &go).unwrap();
         let anew = Solid::make(&after, &at, step, &meshes, &go).unwrap();
