@@ -217,6 +217,28 @@ pub fn mirrored(stroke: &Stroke, painting: &Placement, image: &Image) -> Stroke 
     }
 }
 
+/// Whether a stroke and its image are one: a led point is with every image, since what is led twice over
+/// one place does not swell. A line or an area is where it goes across to the other side or lies
+/// between the two; one that ends there superposes, and two halves are the whole. Solids melt into each
+/// other as ever.
+pub fn meets_image(stroke: &Stroke, painting: &Placement, image: &Image) -> bool {
+    let ends: &[Vec3] = match &stroke.skeleton {
+        Skeleton::Points(_) => return true,
+        Skeleton::Volume(_) => return false,
+        Skeleton::Line(a, b) => &[*a, *b],
+        Skeleton::Polygon(corners) => corners,
+    };
+    let stands = painting.affine() * stroke.placement.affine();
+    let near = 0.2 * stroke.radius * painting.scale.abs().max_element();
+    let ways: Vec<Vec3> = ends
+        .iter()
+        .map(|p| stands.transform_point3(*p))
+        .map(|p| image.point(p) - p)
+        .filter(|way| way.length() > near)
+        .collect();
+    ways.is_empty() || ways.iter().any(|a| ways.iter().any(|b| a.dot(*b) < 0.0))
+}
+
 /// How far a solid melts into what it meets, in its own metres: it follows the size of the brush.
 pub fn melt(recipe: &Recipe) -> f32 {
     let bounds = recipe.bounds();

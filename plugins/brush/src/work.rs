@@ -178,14 +178,20 @@ impl Studio<'_> {
         if draft.erase && work.painting.is_none() {
             return Err(StrokeFault::NothingToErase);
         }
+        // What live symmetry makes of it is painted with it.
+        let images = self.project.images();
+        let joined = images
+            .iter()
+            .any(|image| stroke::meets_image(&made, &work.placement, image));
         let made = Stroke {
             weight: made.weight * brush.strength,
             erase: draft.erase,
+            twin: if joined { work.canvas.next_twin() } else { 0 },
             ..made
         };
-        // What live symmetry makes of it is painted with it.
-        let images = self.project.images().iter();
-        let images = images.map(|i| stroke::mirrored(&made, &work.placement, i));
+        let images = images
+            .iter()
+            .map(|image| stroke::mirrored(&made, &work.placement, image));
         work.strokes = images.collect();
         work.strokes.insert(0, made);
         if matches!(draft.phase(side), Phase::Stamping) && self.settings.brush.volume.is_empty() {

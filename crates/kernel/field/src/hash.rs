@@ -192,7 +192,10 @@ impl Writer {
         self.count(canvas.strokes.len());
         for stroke in &canvas.strokes {
             self.f32s(&[stroke.radius, stroke.weight]);
-            self.tag(u8::from(stroke.erase));
+            self.tag(u8::from(stroke.erase) | u8::from(stroke.twin != 0) << 1);
+            if stroke.twin != 0 {
+                self.count(stroke.twin as usize);
+            }
             self.placement(&stroke.placement);
             match &stroke.skeleton {
                 Skeleton::Points(points) => {

@@ -1,3 +1,4 @@
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
@@ -31,6 +32,23 @@ impl Default for Scratch {
             stack: Vec::new(),
             order: Vec::new(),
         }
+    }
+}
+
+thread_local! {
+    /// Buffers that were used before, for solids within others.
+    static SPARE: RefCell<Vec<Scratch>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Scratch {
+    /// Buffers for a solid within another.
+    pub(crate) fn spare() -> Self {
+        SPARE.with_borrow_mut(Vec::pop).unwrap_or_default()
+    }
+
+    /// Keeps them for the next one of this thread.
+    pub(crate) fn give_back(self) {
+        SPARE.with_borrow_mut(|all| all.push(self));
     }
 }
 

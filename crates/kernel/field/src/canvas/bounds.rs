@@ -17,16 +17,10 @@ impl Painting {
             return None;
         }
         let mut felt = Felt::default();
-        let mut rest = &chunks[..];
-        while let Some(&first) = rest.first() {
-            let index = self.chunks[first as usize].stroke;
-            let n = rest
-                .iter()
-                .take_while(|c| self.chunks[**c as usize].stroke == index)
-                .count();
-            let (own, after) = rest.split_at(n);
-            rest = after;
-            let stroke = &self.strokes[index as usize];
+        let mut runs = self.runs(&chunks).peekable();
+        // What the twins before it come to.
+        let mut twins = (0.0f32, 0.0f32);
+        while let Some((stroke, own)) = runs.next() {
             let (c, radius) = match &stroke.to_local {
                 None => (block.centre, block.radius),
                 Some(m) => {
@@ -105,14 +99,22 @@ impl Painting {
             let low = stroke.weight * (low - 4.0e-5).max(0.0);
             let high = stroke.weight * (high + 4.0e-5).max(0.0);
             felt.slope += slope;
+            if !stroke.erase {
+                felt.finest = felt.finest.min(scales.0);
+                felt.widest = felt.widest.max(scales.1);
+            }
+            let (low, high) = (low.max(twins.0), high.max(twins.1));
+            if runs.peek().is_some_and(|(next, _)| stroke.is_twin(next)) {
+                twins = (low, high);
+                continue;
+            }
+            twins = (0.0, 0.0);
             if stroke.erase {
                 (felt.low, felt.high) = (erased(felt.low, high), erased(felt.high, low));
                 continue;
             }
             felt.low = blended(felt.low, low, self.blend);
             felt.high = blended(felt.high, high, self.blend);
-            felt.finest = felt.finest.min(scales.0);
-            felt.widest = felt.widest.max(scales.1);
         }
         felt.low -= 1.0e-4 * felt.low.abs();
         felt.high += 1.0e-4 * felt.high.abs();

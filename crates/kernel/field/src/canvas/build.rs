@@ -43,8 +43,14 @@ impl Painting {
             least: f32::INFINITY,
         };
         let mut parts = Vec::new();
-        for stroke in &canvas.strokes {
-            painting.add(canvas, stroke, to_world, bench, &mut parts)?;
+        let mut twins = 0;
+        for (i, stroke) in canvas.strokes.iter().enumerate() {
+            let before = i.checked_sub(1).and_then(|i| canvas.strokes.get(i));
+            let joins = before.is_some_and(|b| stroke.is_twin(b));
+            if !joins {
+                twins = if stroke.twin == 0 { 0 } else { i as u32 + 1 };
+            }
+            painting.add(canvas, stroke, (twins, joins), to_world, bench, &mut parts)?;
         }
         painting.groups = painting
             .chunks
@@ -66,6 +72,7 @@ impl Painting {
         &mut self,
         canvas: &Canvas,
         stroke: &Stroke,
+        (twins, joins): (u32, bool),
         to_world: Affine3A,
         bench: &mut dyn Bench,
         parts: &mut Vec<Part>,
@@ -89,13 +96,14 @@ impl Painting {
         let [_, line, polygon] = family
             .slopes()
             .map(|s| s * stroke.weight / (support * shrink));
-        let mut name = Name::of(canvas, stroke, &to_world);
+        let mut name = Name::of(canvas, stroke, joins, &to_world);
         let index = self.strokes.len() as u32;
         let first = self.segments.len();
         let mut inked = Inked {
             kind: Inking::Points,
             weight: stroke.weight,
             erase: stroke.erase,
+            twins,
             scale: family.scale(radius) * shrink,
             slope: 0.0,
             to_local: (!fold).then(|| placed.inverse()),
@@ -241,7 +249,7 @@ impl Painting {
 struct Name(blake3::Hasher);
 
 impl Name {
-    fn of(canvas: &Canvas, stroke: &Stroke, to_world: &Affine3A) -> Self {
+    fn of(canvas: &Canvas, stroke: &Stroke, joins: bool, to_world: &Affine3A) -> Self {
         let mut name = Self(blake3::Hasher::new());
         let p = &stroke.placement;
         name.numbers(
@@ -258,7 +266,8 @@ impl Name {
             Skeleton::Polygon(_) => 2,
             Skeleton::Volume(_) => 3,
         };
-        name.0.update(&[kind, u8::from(stroke.erase)]);
+        name.0
+            .update(&[kind, u8::from(stroke.erase), u8::from(joins)]);
         name
     }
 

@@ -181,8 +181,10 @@ impl Edge {
         let left = a - e2;
         let half = (if left > 0.0 { left } else { 0.0 }).sqrt();
         let (low, high) = (s0.clamp(-half, half), s1.clamp(-half, half));
-        let whole_angle = turn(e * self.length, e2 + s0 * s1);
-        let felt_angle = turn(e * (high - low), e2 + high * low);
+        // The angle of the whole less that of what is felt, both within a half turn and to one side, as one.
+        let (y0, x0) = (e * self.length, e2 + s0 * s1);
+        let (y1, x1) = (e * (high - low), e2 + high * low);
+        let rest = turn(y0 * x1 - x0 * y1, x0 * x1 + y0 * y1);
         // G/ρ² = a²/2 − a(e² + s²)/2 + (e² + s²)²/6 along the edge.
         let c0 = a * a * 0.5 - a * e2 * 0.5 + e2 * e2 * (1.0 / 6.0);
         let c2 = (e2 * (1.0 / 3.0) - a * 0.5) * (1.0 / 3.0);
@@ -190,13 +192,13 @@ impl Edge {
             let s2 = s * s;
             s * (c0 + s2 * (c2 + s2 * (1.0 / 30.0)))
         };
-        (e * (whole(high) - whole(low)), whole_angle - felt_angle)
+        (e * (whole(high) - whole(low)), rest)
     }
 }
 
 /// atan2(y, x) to 1e-7, free of calls so that loops over it become vector code; 0 where both are 0.
 #[inline(always)]
-fn turn(y: f32, x: f32) -> f32 {
+pub(crate) fn turn(y: f32, x: f32) -> f32 {
     let (ax, ay) = (x.abs(), y.abs());
     let (low, high) = if ax < ay { (ax, ay) } else { (ay, ax) };
     let t = low / (if high > 1.0e-30 { high } else { 1.0e-30 });

@@ -1,8 +1,11 @@
 //! What is done at every node of a brick, in loops that become vector code.
 
-use glam::{Affine3A, Vec3};
+use std::cell::RefCell;
 
-use super::kernel::{Family, T, power};
+use glam::{Affine3A, Vec3};
+use midair_mesh::Aabb;
+
+use super::kernel::{Family, T, half_space, power};
 use super::paint::{Area, Inked, Segment};
 use super::stroke::HARD;
 use crate::shape::{NODES, Points};
@@ -16,6 +19,36 @@ pub(super) struct Layers {
     pub all: [f32; NODES],
     pub one: [f32; NODES],
 }
+
+thread_local! {
+    /// Layers that were used before.
+    static SPARE: RefCell<Vec<Box<Layers>>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Layers {
+    /// Layers with nothing felt and nothing painted in them; `one` holds anything.
+    pub fn spare() -> Box<Self> {
+        let used = SPARE.with_borrow_mut(Vec::pop);
+        let Some(mut layers) = used else {
+            return Box::new(Self {
+                felt: [0.0; NODES],
+                fine: [0.0; NODES],
+                all: [0.0; NODES],
+                one: [0.0; NODES],
+            });
+        };
+        layers.felt.fill(0.0);
+        layers.fine.fill(0.0);
+        layers.all.fill(0.0);
+        layers
+    }
+
+    /// Keeps them for the next brick of this thread.
+    pub fn give_back(self: Box<Self>) {
+        SPARE.with_borrow_mut(|all| all.push(self));
+    }
+}
+
 /// The squared distance from a line's axis and where its start lies along it, in supports.
 #[inline(always)]
 pub(super) fn axis(from: Vec3, along: Vec3, inverse: f32, x: f32, y: f32, z: f32) -> (f32, f32) {
@@ -85,13 +118,6 @@ pub(super) fn erase_from(all: &mut [f32; NODES], one: &[f32; NODES]) {
     }
 }
 
-pub(super) fn join(layers: &mut Layers, fine: f32) {
-    for i in 0..NODES {
-        layers.felt[i] += layers.one[i];
-        layers.fine[i] += layers.one[i] * fine;
-    }
-}
-
 pub(super) fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inked) {
     let scale = 1.0 / stroke.scale;
     for (i, fine) in fine.iter().enumerate() {
@@ -122,6 +148,10 @@ macro_rules! wide {
 
 wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
 wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
+wide!(join, join_avx2, join_any, (layers: &mut Layers, fine: f32));
+wide!(level, level_avx2, level_any, (layers: &Layers, out: &mut [f32; NODES]));
+wide!(away, away_avx2, away_any, (bounds: &Aabb, rim: f32, p: &Points, least: &mut [f32; NODES]));
+wide!(beside, beside_avx2, beside_any, (weight: f32, inverse: f32, phi: &[f32; NODES], out: &mut [f32; NODES]));
 wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
 wide!(polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
 wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
@@ -138,6 +168,45 @@ fn nearest_any(s: &Segment, p: &Points, out: &mut [f32; NODES]) {
 fn profile_any(family: &Family, weight: f32, out: &mut [f32; NODES]) {
     for o in out {
         *o = weight * family.at_point(*o);
+    }
+}
+
+/// Adds what one stroke makes felt, `fine` for each metre of it.
+#[inline(always)]
+fn join_any(layers: &mut Layers, fine: f32) {
+    for i in 0..NODES {
+        layers.felt[i] += layers.one[i];
+        layers.fine[i] += layers.one[i] * fine;
+    }
+}
+
+/// φ = (T − F) at the scale of what is felt; 0 where nothing is.
+#[inline(always)]
+fn level_any(layers: &Layers, out: &mut [f32; NODES]) {
+    for (i, o) in out.iter_mut().enumerate() {
+        let (felt, fine) = (layers.felt[i], layers.fine[i]);
+        let scale = if fine > 0.0 { felt / fine } else { 0.0 };
+        *o = (T - layers.all[i]) * scale;
+    }
+}
+
+/// How far each node lies from a box, `rim` at least, where that is less.
+#[inline(always)]
+fn away_any(bounds: &Aabb, rim: f32, p: &Points, least: &mut [f32; NODES]) {
+    let (low, high) = (bounds.min, bounds.max);
+    for (i, l) in least.iter_mut().enumerate() {
+        let x = (low.x - p.x[i]).max(p.x[i] - high.x).max(0.0);
+        let y = (low.y - p.y[i]).max(p.y[i] - high.y).max(0.0);
+        let z = (low.z - p.z[i]).max(p.z[i] - high.z).max(0.0);
+        *l = l.min((x * x + y * y + z * z).sqrt().max(rim));
+    }
+}
+
+/// The potential beside a solid whose φ is known.
+#[inline(always)]
+fn beside_any(weight: f32, inverse: f32, phi: &[f32; NODES], out: &mut [f32; NODES]) {
+    for (o, v) in out.iter_mut().zip(phi) {
+        *o = weight * half_space(*v * inverse);
     }
 }
 

@@ -3,8 +3,8 @@ use midair_mesh::Aabb;
 
 use super::kernel::{Edge, Family, T, clearance, half_space};
 use super::nodes::{
-    Layers, axis, blended, erase_from, erased, join, join_inner, line, moved, nearest, polygon,
-    profile, raise,
+    Layers, away, axis, beside, blended, erase_from, erased, join, join_inner, level, line, moved,
+    nearest, polygon, profile, raise,
 };
 use super::stroke::HARD;
 use crate::Program;
@@ -38,12 +38,21 @@ pub(super) struct Inked {
     pub kind: Inking,
     pub weight: f32,
     pub erase: bool,
+    /// The same for strokes that are one; 0 for one by itself.
+    pub twins: u32,
     /// Metres for one unit of potential at its surface; for a canvas, the factor on its own.
     pub scale: f32,
     /// A bound of |∇F|, per metre; for a field, metres of the world in one of the canvas.
     pub slope: f32,
     /// To its own frame, where that is not the canvas's.
     pub to_local: Option<Affine3A>,
+}
+
+impl Inked {
+    /// Whether the next stroke is one with this one.
+    pub fn is_twin(&self, next: &Self) -> bool {
+        self.twins != 0 && self.twins == next.twins
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -151,25 +160,26 @@ impl Painting {
         found
     }
 
+    /// The strokes of chunks that stand by stroke, each with its own.
+    pub(super) fn runs<'a>(
+        &'a self,
+        chunks: &'a [u32],
+    ) -> impl Iterator<Item = (&'a Inked, &'a [u32])> {
+        let of = |c: u32| self.chunks[c as usize].stroke;
+        chunks
+            .chunk_by(move |a, b| of(*a) == of(*b))
+            .map(move |own| (&self.strokes[of(own[0]) as usize], own))
+    }
+
     /// φ at the nodes of a brick, metres of the canvas: (T − F) at the scale of the strokes that
     /// are felt there, so that |∇φ| is near 1 at the surface.
     pub fn brick(&self, place: &Place, out: &mut [f32; NODES]) {
-        let mut layers = Box::new(Layers {
-            felt: [0.0; NODES],
-            fine: [0.0; NODES],
-            all: [0.0; NODES],
-            one: [0.0; NODES],
-        });
+        let mut layers = Layers::spare();
         self.potential(place, &mut layers);
         let reach = FAR * place.local_step;
-        let mut far = false;
-        for (i, o) in out.iter_mut().enumerate() {
-            let (felt, fine) = (layers.felt[i], layers.fine[i]);
-            let scale = if fine > 0.0 { felt / fine } else { 0.0 };
-            far |= fine <= 0.0;
-            *o = (T - layers.all[i]) * scale;
-        }
-        if !far {
+        level(&layers, out);
+        if layers.fine.iter().all(|f| *f > 0.0) {
+            layers.give_back();
             return;
         }
         // Felt nowhere: no nearer than the nearest thing's own field ends.
@@ -181,49 +191,52 @@ impl Painting {
             if stroke.erase {
                 continue;
             }
-            let (low, high) = (chunk.bounds.min, chunk.bounds.max);
             let rim = T * stroke.scale;
-            let p = place.points;
-            for (i, l) in least.iter_mut().enumerate() {
-                let x = (low.x - p.x[i]).max(p.x[i] - high.x).max(0.0);
-                let y = (low.y - p.y[i]).max(p.y[i] - high.y).max(0.0);
-                let z = (low.z - p.z[i]).max(p.z[i] - high.z).max(0.0);
-                *l = l.min((x * x + y * y + z * z).sqrt().max(rim));
-            }
+            away(&chunk.bounds, rim, place.points, &mut least);
         }
         for (i, o) in out.iter_mut().enumerate() {
             if layers.fine[i] <= 0.0 {
                 *o = least[i];
             }
         }
+        layers.give_back();
     }
 
     fn potential(&self, place: &Place, layers: &mut Layers) {
         let chunks = self.within(&place.within);
-        let mut rest = &chunks[..];
+        let mut runs = self.runs(&chunks).peekable();
         let mut raised = false;
-        while let Some(&first) = rest.first() {
-            let index = self.chunks[first as usize].stroke;
-            let n = rest
-                .iter()
-                .take_while(|c| self.chunks[**c as usize].stroke == index)
-                .count();
-            let (own, after) = rest.split_at(n);
-            rest = after;
-            let stroke = &self.strokes[index as usize];
+        // The most that the twins before it are felt.
+        let mut twins: Option<Box<[f32; NODES]>> = None;
+        while let Some((stroke, own)) = runs.next() {
             // A volume's own scale changes from place to place, and it fills this in by itself.
             let mut inner = None;
-            if !self.ink(stroke, own, place, layers, &mut inner) {
+            let felt = self.ink(stroke, own, place, layers, &mut inner);
+            if felt && !stroke.erase {
+                match &inner {
+                    Some(fine) => join_inner(layers, fine, stroke),
+                    None => join(layers, 1.0 / stroke.scale),
+                }
+            }
+            if let Some(before) = &twins {
+                if !felt {
+                    layers.one.copy_from_slice(&before[..]);
+                } else {
+                    let pairs = layers.one.iter_mut().zip(&before[..]);
+                    pairs.for_each(|(a, b)| *a = if *b > *a { *b } else { *a });
+                }
+            } else if !felt {
                 continue;
             }
+            if runs.peek().is_some_and(|(next, _)| stroke.is_twin(next)) {
+                twins = Some(Box::new(layers.one));
+                continue;
+            }
+            twins = None;
             if stroke.erase {
                 self.lower(layers, &mut raised);
                 erase_from(&mut layers.all, &layers.one);
                 continue;
-            }
-            match &inner {
-                Some(fine) => join_inner(layers, fine, stroke),
-                None => join(layers, 1.0 / stroke.scale),
             }
             if self.blend >= HARD {
                 layers
@@ -326,18 +339,24 @@ impl Painting {
                 true
             }
             Inking::Field(program, radius) => {
-                let mut scratch = Scratch::default();
-                let coord = place.first >> 3;
-                match program.values(coord, &mut scratch) {
-                    None => return false,
-                    Some(values) => {
-                        let inverse = 1.0 / radius;
-                        for (o, v) in out.iter_mut().zip(values) {
-                            *o = stroke.weight * half_space(*v * inverse);
-                        }
-                    }
+                let half = 3.5 * program.step();
+                let centre = (place.first.as_vec3() + 3.5) * program.step();
+                let (low, high) = program.bounds_of(centre, half);
+                if low >= *radius {
+                    return false;
                 }
-                true
+                if high <= -radius {
+                    out.fill(stroke.weight * half_space(-1.0));
+                    return true;
+                }
+                let mut scratch = Scratch::spare();
+                let values = program.values(place.first >> 3, &mut scratch);
+                let felt = values.is_some();
+                if let Some(values) = values {
+                    beside(stroke.weight, 1.0 / radius, values, out);
+                }
+                scratch.give_back();
+                felt
             }
             Inking::Canvas(painting) => {
                 let m = stroke.to_local.unwrap_or(Affine3A::IDENTITY);
@@ -346,12 +365,7 @@ impl Painting {
                     within: crate::recipe::transformed(&place.within, &m),
                     ..*place
                 };
-                let mut own = Box::new(Layers {
-                    felt: [0.0; NODES],
-                    fine: [0.0; NODES],
-                    all: [0.0; NODES],
-                    one: [0.0; NODES],
-                });
+                let mut own = Layers::spare();
                 painting.potential(&inside, &mut own);
                 for (o, a) in out.iter_mut().zip(&own.all) {
                     *o = stroke.weight * a;
@@ -365,6 +379,7 @@ impl Painting {
                         0.0
                     };
                 }
+                own.give_back();
                 *inner = Some(fine);
                 true
             }
@@ -375,16 +390,9 @@ impl Painting {
     fn point(&self, p: Vec3, world: Vec3) -> (f32, f32, f32) {
         let (mut all, mut felt, mut fine) = (0.0f32, 0.0f32, 0.0f32);
         let chunks = self.within(&Aabb::new(p, p));
-        let mut rest = &chunks[..];
-        while let Some(&first) = rest.first() {
-            let index = self.chunks[first as usize].stroke;
-            let n = rest
-                .iter()
-                .take_while(|c| self.chunks[**c as usize].stroke == index)
-                .count();
-            let (own, after) = rest.split_at(n);
-            rest = after;
-            let stroke = &self.strokes[index as usize];
+        let mut runs = self.runs(&chunks).peekable();
+        let mut twins = 0.0f32;
+        while let Some((stroke, own)) = runs.next() {
             let q = stroke.to_local.map_or(p, |m| m.transform_point3(p));
             let mut scale = 1.0 / stroke.scale;
             let one = match &stroke.kind {
@@ -415,13 +423,21 @@ impl Painting {
                     f
                 }
             } * stroke.weight;
-            if stroke.erase {
-                all = erased(all, one);
+            if !stroke.erase {
+                felt += one;
+                fine += one * scale;
+            }
+            let one = one.max(twins);
+            if runs.peek().is_some_and(|(next, _)| stroke.is_twin(next)) {
+                twins = one;
                 continue;
             }
-            felt += one;
-            fine += one * scale;
-            all = blended(all, one, self.blend);
+            twins = 0.0;
+            all = if stroke.erase {
+                erased(all, one)
+            } else {
+                blended(all, one, self.blend)
+            };
         }
         (all, felt, fine)
     }

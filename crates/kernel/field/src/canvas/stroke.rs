@@ -39,6 +39,11 @@ pub struct Stroke<R = Recipe> {
     /// It takes away from the strokes before it. Those after it are not touched.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub erase: bool,
+    /// Strokes that follow each other with one number here, not 0, are one: where several are felt, the
+    /// most that one of them is felt counts, so that a led point and its mirror image do not swell
+    /// where they meet.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub twin: u32,
     /// Where it stands on the canvas; its scale scales the radius as well.
     #[serde(default)]
     pub placement: Placement,
@@ -75,6 +80,10 @@ fn one() -> f32 {
 
 fn is_one(x: &f32) -> bool {
     *x == 1.0
+}
+
+fn is_none(x: &u32) -> bool {
+    *x == 0
 }
 
 /// Where the potential of a point falls off most evenly at its surface: F″ = 0 at u = 1/√3.
@@ -130,6 +139,7 @@ impl<R> Stroke<R> {
             radius: self.radius,
             weight: self.weight,
             erase: self.erase,
+            twin: self.twin,
             placement: self.placement,
         })
     }
@@ -143,6 +153,7 @@ impl Stroke {
             radius,
             weight: 1.0,
             erase: false,
+            twin: 0,
             placement: Placement::IDENTITY,
         }
     }
@@ -150,6 +161,11 @@ impl Stroke {
     /// A ball.
     pub fn point(at: Vec3, radius: f32) -> Self {
         Self::new(Skeleton::Points(Arc::new([at.extend(1.0)])), radius)
+    }
+
+    /// Whether it is one with the stroke before it.
+    pub(super) fn is_twin(&self, before: &Self) -> bool {
+        self.twin != 0 && self.twin == before.twin && self.erase == before.erase
     }
 
     /// The weight with which a line or polygon too short to fill the kernel still has its surface
@@ -222,6 +238,12 @@ impl Stroke {
 }
 
 impl Canvas {
+    /// A number that no stroke is named a twin by.
+    pub fn next_twin(&self) -> u32 {
+        let most = self.strokes.iter().map(|s| s.twin).max();
+        most.unwrap_or(0).wrapping_add(1).max(1)
+    }
+
     /// Whether every number in it makes sense; the solids it holds aside.
     ///
     /// # Errors

@@ -303,16 +303,16 @@ fn stroke() -> impl Strategy<Value = Stroke> {
         0.6f32..1.5,
         any::<bool>(),
     );
-    (skeleton, 0.02f32..0.06, 0..4, turn).prop_map(|(skeleton, radius, erase, (v, s, uneven))| {
-        Stroke {
-            erase: erase == 0,
-            placement: Placement {
-                translation: Vec3::from(v) * 0.1,
-                rotation: Quat::from_scaled_axis(Vec3::from(v)),
-                scale: Vec3::new(s, if uneven { 1.0 } else { s }, s),
-            },
-            ..Stroke::new(skeleton, radius)
-        }
+    let one = (skeleton, 0.02f32..0.06, 0..4, turn, 0u32..3);
+    one.prop_map(|(skeleton, radius, erase, (v, s, uneven), twin)| Stroke {
+        erase: erase == 0,
+        twin,
+        placement: Placement {
+            translation: Vec3::from(v) * 0.1,
+            rotation: Quat::from_scaled_axis(Vec3::from(v)),
+            scale: Vec3::new(s, if uneven { 1.0 } else { s }, s),
+        },
+        ..Stroke::new(skeleton, radius)
     })
 }
 
@@ -406,6 +406,35 @@ proptest! {
         }
         painted.strokes.clear();
     }
+}
+
+/// Twins are felt as much as the one of them that is felt most; others add up.
+#[test]
+fn twins_do_not_swell() {
+    let led = |a: [f32; 3], b: [f32; 3], twin| Stroke {
+        twin,
+        ..Stroke::new(
+            Skeleton::Points(Arc::new([
+                Vec3::from(a).extend(1.0),
+                Vec3::from(b).extend(1.0),
+            ])),
+            0.05,
+        )
+    };
+    let of = |twins: [u32; 2]| {
+        let strokes = vec![
+            led([-0.1, 0.0, 0.0], [0.2, 0.0, 0.0], twins[0]),
+            led([0.1, 0.0, 0.0], [-0.2, 0.0, 0.0], twins[1]),
+        ];
+        program(&canvas(strokes), 0.01)
+    };
+    let thick = |p: &Program| reach(p, Vec3::ZERO, Vec3::Y * 0.2);
+    assert!((thick(&of([3, 3])) - 0.05).abs() < 1e-4);
+    for others in [[0, 0], [3, 0], [3, 4]] {
+        assert!(thick(&of(others)) > 0.06, "{others:?}");
+    }
+    let grid = fuse(&of([3, 3]), &FuseOptions::default()).unwrap();
+    assert!(grid.is_inside(IVec3::new(0, 4, 0)) && !grid.is_inside(IVec3::new(0, 6, 0)));
 }
 
 /// Where an edit ends within what is wholly inside.
