@@ -346,3 +346,108 @@ fn live_symmetry_paints_the_other_side_in_the_same_step() {
     assert!(bounds.centre().x.abs() < 1e-3, "{bounds:?}");
     assert!((bounds.size().x - 0.7).abs() < 0.01, "{bounds:?}");
 }
+
+/// How thick the painting is above and below a place, by a ray through its mesh.
+fn thickness(s: &Studio, x: f32) -> f32 {
+    let mesh = s.mesh(s.only(), 0.01);
+    let near = mesh.positions.iter().filter(|p| (p.x - x).abs() < 0.012);
+    let (low, high) = near.fold((f32::MAX, f32::MIN), |(low, high), p| {
+        (low.min(p.y), high.max(p.y))
+    });
+    high - low
+}
+
+#[test]
+fn a_stroke_led_across_the_mirror_plane_is_as_thick_there_as_elsewhere() {
+    for skeleton in ["Point", "Line"] {
+        let mut s = painter(skeleton);
+        set(&mut s, "symmetry.mirror", "\"X\"");
+        s.frames(2);
+        drag(&mut s, Vec3::new(-0.1, 1.0, 0.0), Vec3::new(0.3, 1.0, 0.0));
+        let painted = strokes(&s);
+        assert_eq!(painted.strokes.len(), 2);
+        let twin = painted.strokes[0].twin;
+        assert!(twin != 0 && painted.strokes[1].twin == twin);
+        let (middle, aside) = (thickness(&s, 0.0), thickness(&s, 0.2));
+        assert!((aside - 0.1).abs() < 0.006, "{skeleton}: {aside}");
+        assert!(
+            (middle / aside - 1.0).abs() < 0.03,
+            "{skeleton}: {middle} beside {aside}"
+        );
+        // Another stroke is one with its own image alone.
+        drag(&mut s, Vec3::new(-0.05, 1.2, 0.0), Vec3::new(0.2, 1.2, 0.0));
+        let painted = strokes(&s);
+        assert_ne!(painted.strokes[2].twin, twin);
+        assert_eq!(painted.strokes[2].twin, painted.strokes[3].twin);
+    }
+}
+
+#[test]
+fn a_line_that_ends_in_the_mirror_plane_is_half_of_one() {
+    let mut s = painter("Line");
+    set(&mut s, "symmetry.mirror", "\"X\"");
+    s.frames(2);
+    drag(&mut s, Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.3, 1.0, 0.0));
+    assert!(strokes(&s).strokes.iter().all(|s| s.twin == 0));
+    assert!(
+        (thickness(&s, 0.0) - 0.1).abs() < 0.006,
+        "{}",
+        thickness(&s, 0.0)
+    );
+}
+
+/// A blob is painted, cuts a cube in Assemble, and what is left is taken out of the library again.
+#[test]
+fn a_blob_cuts_a_cube_and_becomes_a_component() {
+    let mut s = Studio::new();
+    let cube = s.place("solid/cube", HERE);
+    s.click(Side::Right, Action::Library);
+    let whole = s.faultless(cube, 0.01).volume;
+    s.ask(Command::Mode(BRUSH));
+    set(&mut s, "brush.skeleton", "\"Point\"");
+    set(&mut s, "brush.radius", "0.08");
+    s.frames(2);
+    // Above the cube and into its top.
+    let top = HERE + Vec3::Y * 0.2;
+    drag(
+        &mut s,
+        top + Vec3::new(-0.1, 0.04, 0.0),
+        top + Vec3::new(0.1, 0.04, 0.05),
+    );
+    s.settle();
+    let blob = s.document().objects().next_back().unwrap().0;
+    assert!(canvas(s.object(blob)).is_some());
+    s.ask(Command::Mode(midair_csg::ASSEMBLE));
+    s.settle();
+    s.operate();
+    s.mark(HERE - Vec3::Y * 0.15, Action::Up);
+    s.mark(top + Vec3::Y * 0.09, Action::Down);
+    assert_eq!(s.marks(), [(cube, Op::Union), (blob, Op::Subtract)]);
+    s.finish();
+    let cut = s.document().objects().next_back().unwrap().0;
+    let left = s.faultless(cut, 0.01).volume;
+    assert!(
+        left < 0.99 * whole && left > 0.8 * whole,
+        "{left} of {whole}"
+    );
+    s.ask(Command::Objects(midair_studio::objects::Ask::Select {
+        ids: vec![cut],
+        how: midair_studio::objects::How::Set,
+    }));
+    s.ask(Command::Keep {
+        objects: Vec::new(),
+    });
+    s.settle();
+    let shelf = s.world().resource::<midair_studio::project::Shelf>();
+    let own = shelf.library.categories();
+    let own: Vec<String> = own
+        .filter(|(name, _)| *name == midair_library::OWN)
+        .flat_map(|(_, all)| all)
+        .map(|c| c.id.clone())
+        .collect();
+    assert_eq!(own.len(), 1, "{:?}", s.warnings());
+    let again = s.place(&own[0], HERE + Vec3::X);
+    let again = s.faultless(again, 0.01).volume;
+    assert!((again / left - 1.0).abs() < 0.01, "{again}, not {left}");
+    assert_eq!(s.warnings(), [] as [String; 0]);
+}

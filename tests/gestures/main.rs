@@ -10,6 +10,7 @@ mod fuzz;
 mod gamepad;
 mod holding;
 mod keyboard;
+mod large;
 mod leaving;
 mod links;
 mod looks;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use midair_document::{Edit, Object};
-use midair_field::Placement;
+use midair_field::{Node, Op, Operand, Placement, Recipe};
 use midair_solid::ExportOptions;
 
 use super::{
@@ -165,6 +165,34 @@ fn handle(
                 };
                 errands.import(paths.iter().map(import), &places);
             }
+            Command::Keep { objects } => {
+                let ids = if objects.is_empty() {
+                    &selection.0
+                } else {
+                    objects
+                };
+                if ids.is_empty() {
+                    notices.warn("Nothing to keep in the library: select a solid first.");
+                }
+                for id in ids {
+                    let Some(object) = project.document().object(*id) else {
+                        continue;
+                    };
+                    let Some(recipe) = object.operand() else {
+                        notices.warn(format!(
+                            "{} is not closed, so it cannot be a component: close it first.",
+                            object.name
+                        ));
+                        continue;
+                    };
+                    let keep = Errand::Keep {
+                        folders: places.library.clone(),
+                        name: object.name.clone(),
+                        recipe: scaled(recipe, object.placement.scale),
+                    };
+                    errands.start(keep, &project);
+                }
+            }
             Command::Bring { paths, at } => {
                 // What was dropped by the handful is meant for the library.
                 let at = (paths.len() <= MOST_PLACED && at.is_finite()).then_some(*at);
@@ -215,6 +243,23 @@ fn handle(
     if selection.0.iter().any(|&id| document.object(id).is_none()) {
         selection.0.retain(|&id| document.object(id).is_some());
     }
+}
+
+/// A solid as large as it stands in the room.
+fn scaled(recipe: Recipe, scale: Vec3) -> Recipe {
+    if scale == Vec3::ONE {
+        return recipe;
+    }
+    let placement = Placement {
+        scale,
+        ..Placement::IDENTITY
+    };
+    Recipe::new(Node::Solid(vec![Operand {
+        op: Op::Union,
+        placement,
+        recipe,
+        muted: false,
+    }]))
 }
 
 /// The wand has picked a component: it is to appear at the hand.

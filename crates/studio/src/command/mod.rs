@@ -87,6 +87,12 @@ pub enum Command {
     },
     /// Brings meshes into the user's library.
     Import(Vec<PathBuf>),
+    /// Keeps solids in the user's library, each as a component under its name.
+    Keep {
+        /// Which; those that are selected where none is named.
+        #[serde(default)]
+        objects: Vec<ObjectId>,
+    },
     /// Brings meshes into the user's library and, where they are few, into the scene as well.
     Bring {
         /// The files.

@@ -13,7 +13,7 @@ use crate::bounded::Bounded;
 use crate::command::{Command, Dialog};
 use crate::evaluate::Evaluations;
 use crate::hands::Side;
-use crate::project::{Picture, Places, Shelf, Thumbnails};
+use crate::project::{Picture, Places, Selection, Shelf, Thumbnails};
 use crate::settings::Settings;
 use crate::units;
 
@@ -79,7 +79,7 @@ impl Panel for LibraryPanel {
             let search = egui::TextEdit::singleline(&mut self.query)
                 .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))
                 .margin(egui::Margin::symmetric(8, 6))
-                .desired_width(ui.available_width() - 44.0);
+                .desired_width(ui.available_width() - 84.0);
             ui.add(search);
             let import = ui.button(icon::DOWNLOAD_SIMPLE);
             if import
@@ -87,6 +87,16 @@ impl Panel for LibraryPanel {
                 .clicked()
             {
                 asks.push(Command::Dialog(Dialog::Import));
+            }
+            let chosen = !world.resource::<Selection>().0.is_empty();
+            let keep = ui.add_enabled(chosen, egui::Button::new(icon::STACK_PLUS));
+            if keep
+                .on_hover_text("Keep what is selected in the library, as components of your own")
+                .clicked()
+            {
+                asks.push(Command::Keep {
+                    objects: Vec::new(),
+                });
             }
         });
         let by = kit::turned(ui.ctx(), "library");

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use bevy::prelude::*;
 use midair_document::{Edit, ImageHash, Journal, MeshSpool, Object, ObjectId, Opened, open, save};
 use midair_field::Recipe;
-use midair_library::Volumes;
+use midair_library::{Folders, Volumes};
 use midair_mesh::{MeshHash, TriMesh};
 use midair_solid::{ExportOptions, export};
 
@@ -38,6 +38,12 @@ pub(crate) enum Errand {
         path: PathBuf,
         at: Option<Vec3>,
     },
+    /// Keep a solid in the user's library.
+    Keep {
+        folders: Folders,
+        name: String,
+        recipe: Recipe,
+    },
     /// Fetch the meshes of a library component before it is placed.
     Place(Box<Object>),
     Restore,
@@ -49,6 +55,7 @@ enum Outcome {
     Opened(PathBuf, Box<Opened>),
     Saved(PathBuf, Vec<String>),
     Exported(PathBuf, usize),
+    Kept(String),
     Fetched(Box<Object>, Vec<Arc<TriMesh>>),
     Pictured(Box<Object>, Vec<u8>),
     Failed(String),
@@ -199,6 +206,23 @@ impl Errands {
                     Box::new(move || picture(&path, at, spool)),
                 )
             }
+            Errand::Keep {
+                folders,
+                name,
+                recipe,
+            } => (
+                format!("Keeping {name}"),
+                Box::new(move || {
+                    let mesh = |hash: &MeshHash| {
+                        let held = store.get(*hash);
+                        held.or_else(|| volumes.as_ref().and_then(|v| v.mesh(hash)))
+                    };
+                    match midair_library::save(&folders, &name, &recipe, &mesh) {
+                        Ok(component) => Outcome::Kept(component.name),
+                        Err(error) => Outcome::Failed(format!("{name} was not kept: {error}.")),
+                    }
+                }),
+            ),
             Errand::Place(object) => {
                 let spool = project.history().journal().map(Journal::spool);
                 (

@@ -87,6 +87,14 @@ fn take_in(world: &mut World, outcome: Outcome, revision: u64) {
         Outcome::Exported(path, triangles) => world
             .resource_mut::<Notices>()
             .info(format!("Wrote {} ({triangles} triangles)", path.display())),
+        Outcome::Kept(name) => {
+            let places = world.resource::<Places>().clone();
+            world.resource_scope(|world, mut shelf: Mut<Shelf>| {
+                let mut notices = world.resource_mut::<Notices>();
+                shelf.reload(&places.library, &mut notices);
+                notices.info(format!("{name} is in the library now."));
+            });
+        }
         Outcome::Fetched(object, meshes) => {
             world.resource_scope(|world, mut notices: Mut<Notices>| {
                 let mut project = world.resource_mut::<Project>();
