@@ -198,7 +198,7 @@ impl Edge {
 
 /// atan2(y, x) to 1e-7, free of calls so that loops over it become vector code; 0 where both are 0.
 #[inline(always)]
-pub(crate) fn turn(y: f32, x: f32) -> f32 {
+fn turn(y: f32, x: f32) -> f32 {
     let (ax, ay) = (x.abs(), y.abs());
     let (low, high) = if ax < ay { (ax, ay) } else { (ay, ax) };
     let t = low / (if high > 1.0e-30 { high } else { 1.0e-30 });

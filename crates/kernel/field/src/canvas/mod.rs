@@ -11,7 +11,6 @@ mod view;
 
 pub(crate) use build::{Bench, Part};
 pub use kernel::T as CANVAS_THRESHOLD;
-pub(crate) use kernel::turn;
 pub(crate) use paint::{Block, Painting, Place};
 pub use stroke::{Canvas, CanvasError, HARD, MAX_POINTS, MAX_STROKES, Skeleton, Stroke};
 pub use view::{ChunkView, PaintingView, SkeletonView, StrokeView};
