@@ -433,6 +433,8 @@ fn twins_do_not_swell() {
     for others in [[0, 0], [3, 0], [3, 4]] {
         assert!(thick(&of(others)) > 0.06, "{others:?}");
     }
+    let viewed = |twins| of(twins).leaves[0].painting().unwrap().view().is_some();
+    assert!(viewed([3, 4]) && !viewed([3, 3]), "others add twins up");
     let grid = fuse(&of([3, 3]), &FuseOptions::default()).unwrap();
     assert!(grid.is_inside(IVec3::new(0, 4, 0)) && !grid.is_inside(IVec3::new(0, 6, 0)));
 }

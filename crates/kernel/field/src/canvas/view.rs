@@ -63,8 +63,13 @@ pub struct ChunkView {
 }
 
 impl Painting {
-    /// What it is made of; `None` where there is more to it than skeletons.
+    /// What it is made of; `None` where there is more to it than skeletons, or strokes are one.
     pub fn view(&self) -> Option<PaintingView> {
+        // Evaluators elsewhere add up; strokes that are one are the processor's.
+        let twins = |pair: &[super::paint::Inked]| pair[0].is_twin(&pair[1]);
+        if self.strokes.windows(2).any(twins) {
+            return None;
+        }
         let strokes = self.strokes.iter().map(|s| {
             let skeleton = match &s.kind {
                 Inking::Points => SkeletonView::Points,
