@@ -174,15 +174,6 @@ fn a_file_keeps_it_and_gltf_has_its_nearest() {
 }
 
 /// Frames until something has come to be.
-fn until(s: &mut Studio, what: &str, is: impl Fn(&Studio) -> bool) {
-    let since = Instant::now();
-    while !is(s) {
-        s.frame();
-        std::thread::sleep(Duration::from_millis(5));
-        assert!(since.elapsed() < Duration::from_secs(30), "never {what}");
-    }
-}
-
 const MOSS: &str = "//! name: Moss\n//! dial damp: 0 to 1, usually 0.5\n\
     fn surface(at: Point, plain: Surface) -> Surface {\n    var made = plain;\n    \
     made.roughness = dial.damp;\n    return made;\n}\n";
@@ -211,7 +202,7 @@ fn a_file_is_read_again_while_the_app_runs_and_a_broken_one_changes_nothing() {
     assert_eq!(s.warnings().len(), 1);
 
     let file = moss(&s, MOSS);
-    until(&mut s, "read", |s| living(s, id).is_some());
+    s.until("read", |s| living(s, id).is_some());
     dial(&mut s, id, "damp", 0.25, true);
     let version = |s: &Studio| {
         let shelf = s.world().resource::<MaterialShelf>();
@@ -222,7 +213,7 @@ fn a_file_is_read_again_while_the_app_runs_and_a_broken_one_changes_nothing() {
 
     // A mistake in the fifth line.
     moss(&s, &MOSS.replace("dial.damp", "dial.dump + 1"));
-    until(&mut s, "told", |s| s.warnings().len() == 2);
+    s.until("told", |s| s.warnings().len() == 2);
     let told = s.warnings()[1].clone();
     assert!(told.contains(&file.display().to_string()), "{told}");
     assert!(told.contains("line 5") && told.contains("dump"), "{told}");
@@ -234,11 +225,11 @@ fn a_file_is_read_again_while_the_app_runs_and_a_broken_one_changes_nothing() {
 
     // A head that is none; then it is mended, with one dial more.
     moss(&s, &MOSS.replace("usually 0.5", "often 0.5"));
-    until(&mut s, "told", |s| s.warnings().len() == 3);
+    s.until("told", |s| s.warnings().len() == 3);
     assert!(s.warnings()[2].contains("line 2"), "{:?}", s.warnings());
     let mended = MOSS.replace("//! dial", "//! dial age: 0 to 9, usually 1\n//! dial");
     moss(&s, &mended);
-    until(&mut s, "mended", |s| {
+    s.until("mended", |s| {
         version(s).1.as_deref() == Some(&mended)
     });
     assert_eq!(version(&s).0, first + 1);

@@ -12,14 +12,20 @@ use crate::desk::Desk;
 const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
 
 impl Desk {
-    /// The middle of a widget of the library, in pixels of the window.
-    fn tile(&self, nth: usize) -> Vec2 {
+    /// The middles of the field for the search of the library and of the first component below it, in pixels of the
+    /// window.
+    fn search(&self) -> (Vec2, Option<Vec2>) {
         let regions = self.focus().regions();
         let library = regions.iter().find(|r| r.name == "library");
-        let at = library.expect("the library is open").spots[nth]
-            .rect
-            .center();
-        Vec2::new(at.x, at.y)
+        let spots = &library.expect("the library is open").spots;
+        // The first widget closes the panel; what is done with components stands beside the field.
+        let field = &spots[1];
+        let first = spots.iter().find(|s| s.rect.min.y > field.rect.max.y);
+        let [field, first] = [Some(field), first].map(|spot| {
+            let at = spot?.rect.center();
+            Some(Vec2::new(at.x, at.y))
+        });
+        (field.expect("the field"), first)
     }
 
     /// A component: its name typed into the search of the library, the first that is found dragged
@@ -30,8 +36,7 @@ impl Desk {
             self.strike_one(KeyCode::KeyL);
         }
         self.wait(3);
-        // The first widget closes the panel, the second is the field, the third imports.
-        let field = self.tile(1);
+        let (field, _) = self.search();
         self.glide(field);
         self.click();
         self.strike(&[
@@ -43,7 +48,7 @@ impl Desk {
             self.strike(&[(KeyCode::KeyX, key)]);
         }
         self.wait(3);
-        let from = self.tile(3);
+        let from = self.search().1.expect("something is found");
         let to = self.pixel(to);
         self.drag(MouseButton::Left, from, to);
         self.settle();

@@ -179,6 +179,16 @@ impl Studio {
         self.app.insert_resource(strategy);
     }
 
+    /// Frames until something has come about.
+    pub fn until(&mut self, what: &str, is: impl Fn(&Self) -> bool) {
+        let since = Instant::now();
+        while !is(self) {
+            self.frame();
+            std::thread::sleep(Duration::from_millis(5));
+            assert!(since.elapsed() < Duration::from_secs(30), "never {what}");
+        }
+    }
+
     /// Frames until nothing is on its way, and what is there can be touched.
     pub fn settle(&mut self) {
         let since = Instant::now();
