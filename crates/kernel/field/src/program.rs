@@ -1,3 +1,4 @@
+use std::f32::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 use glam::{Affine3A, DMat3, Mat3A, Vec3};
@@ -45,15 +46,20 @@ impl MeshSource for () {
 }
 
 /// The step at which a mesh scaled by at most `scale` is baked, so that its nodes stand no further
-/// apart than `step` in the world: 0.01·2⁻ᵏ metres with k from 0 to 6, so that steps and scales
+/// apart than `step` in the world: 0.01·2^(−k/2) metres with k from 0 to 12, so that steps and scales
 /// that are much alike share one volume (0.01 is S_local of EasyVRModeling §5.2).
 pub fn local_step(step: f32, scale: f32) -> f32 {
-    let wanted = step / scale;
+    // A thousandth of slack: 0.005 asked for is 0.005 given, whatever the rounding.
+    let wanted = step / scale * 1.001;
     let mut local = 0.01;
     for _ in 0..6 {
-        // A thousandth of slack: 0.005 asked for is 0.005 given, whatever the rounding.
-        if local <= wanted * 1.001 {
-            break;
+        if local <= wanted {
+            return local;
+        }
+        // Between two halvings: half as many bricks at a surface as the finer one.
+        let between = local * FRAC_1_SQRT_2;
+        if between <= wanted {
+            return between;
         }
         local *= 0.5;
     }

@@ -205,7 +205,9 @@ fn local_steps_are_shared() {
     assert_eq!(local_step(0.01, 1.0), 0.01);
     assert_eq!(local_step(0.02, 1.0), 0.01);
     assert_eq!(local_step(0.006, 1.0), 0.005);
-    assert_eq!(local_step(0.01, 1.3), 0.005);
+    assert_eq!(local_step(0.01, 1.3), local_step(0.01, 1.4));
+    assert!((0.005..=0.01 / 1.4).contains(&local_step(0.01, 1.4)));
+    assert_eq!(local_step(0.01, 1.5), 0.005);
     assert_eq!(local_step(0.0025, 1.0), 0.0025);
     assert!(local_step(1e-9, 1.0) >= 0.01 / 64.0);
 }
