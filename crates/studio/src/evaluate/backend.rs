@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use midair_field::{MeshSource, Placement, Program, Recipe};
-use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid};
+use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions};
 use midair_mesh::TriMesh;
 
 pub use crate::settings::Backend as Choice;
@@ -38,6 +38,12 @@ struct Drawing {
     queue: RenderQueue,
     adapter: Adapter,
 }
+
+/// In 16 bits wherever that moves the surface by less than a hundredth of a millimetre.
+const KEPT: SolidOptions = SolidOptions {
+    quantised: false,
+    within: Some(1.0e-5),
+};
 
 enum State {
     /// Nobody asked for a card yet.
@@ -273,7 +279,7 @@ impl Backend {
                     solid.update(&program)?;
                     solid
                 }
-                _ => GpuSolid::make(&gpu, &program)?,
+                _ => GpuSolid::make_with(&gpu, &program, KEPT)?,
             };
             let surface = solid.emit()?;
             Ok((solid, surface))
@@ -304,7 +310,7 @@ impl Backend {
                 solid.update(program)?;
                 solid
             }
-            _ => GpuSolid::make(gpu, program)?,
+            _ => GpuSolid::make_with(gpu, program, KEPT)?,
         };
         let made = started.elapsed();
         let emitted = solid.emit()?;

@@ -220,24 +220,20 @@ impl Running {
                 if let Some(own) = own_surface(&recipe) {
                     return Ok(Made::from_swept(own.mesh, own.uv));
                 }
-                let mut line = None;
-                // A painting is kept with its field, and changes stroke by stroke: the processor's.
-                if !matches!(recipe.node(), Node::Canvas(_)) {
-                    // Of one evaluation there is one surface.
-                    let early = |surface| drop(early.set(surface));
-                    match backend.make(&recipe, step, &meshes, &early) {
-                        Asked::Made(on_card) => {
-                            if cancelled.load(Ordering::Relaxed) {
-                                return Err(SolidError::Cancelled);
-                            }
-                            let mut made = Made::from_mesh(Arc::new(on_card.mesh));
-                            made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
-                            made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
-                            return Ok(made);
+                // Of one evaluation there is one surface.
+                let early = |surface| drop(early.set(surface));
+                let line = match backend.make(&recipe, step, &meshes, &early) {
+                    Asked::Made(on_card) => {
+                        if cancelled.load(Ordering::Relaxed) {
+                            return Err(SolidError::Cancelled);
                         }
-                        Asked::Processor(why) => line = why,
+                        let mut made = Made::from_mesh(Arc::new(on_card.mesh));
+                        made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
+                        made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
+                        return Ok(made);
                     }
-                }
+                    Asked::Processor(why) => why,
+                };
                 let at = Placement::IDENTITY;
                 let solid = match &base {
                     Some(base) => base.remake(&recipe, &at, step, &meshes, &cancelled),

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 use bevy::tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use midair_field::bake::Progress;
-use midair_field::{Node, Placement, Recipe};
+use midair_field::{Placement, Recipe};
 use midair_gpu::{Emitted, GpuSolid};
 use midair_mesh::Aabb;
 use midair_solid::Solid;
@@ -282,9 +282,8 @@ fn start(
                 Some(Base::Card(solid)) => (None, Some(*solid)),
                 None => (None, None),
             };
-            // What was made by the processor goes on there, and so does a painting.
-            let painting = matches!(recipe.node(), Node::Canvas(_));
-            let by_card = if solid.is_none() && !painting {
+            // What was made by the processor goes on there.
+            let by_card = if solid.is_none() {
                 backend.sketch(&recipe, step, &meshes, on_card)
             } else {
                 None
