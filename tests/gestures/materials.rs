@@ -1,7 +1,6 @@
 //! Materials that are written in WGSL: chosen, set, kept, exported, and read again while the app runs.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use midair_brush::BRUSH;
