@@ -228,9 +228,7 @@ fn a_file_is_read_again_while_the_app_runs_and_a_broken_one_changes_nothing() {
     assert!(s.warnings()[2].contains("line 2"), "{:?}", s.warnings());
     let mended = MOSS.replace("//! dial", "//! dial age: 0 to 9, usually 1\n//! dial");
     moss(&s, &mended);
-    s.until("mended", |s| {
-        version(s).1.as_deref() == Some(&mended)
-    });
+    s.until("mended", |s| version(s).1.as_deref() == Some(&mended));
     assert_eq!(version(&s).0, first + 1);
     s.frames(2);
     // What was set of it stays set, under its name.
