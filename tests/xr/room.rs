@@ -204,15 +204,6 @@ pub fn room(folder: &Path) -> Result<()> {
         .press(&mut wand.app, Side::Right, Action::Grab, false)?;
     wand.app
         .until("the cube is let go", |now| now["dragging"] == false)?;
-    if place(&wand.app.now, LIBRARY, "Sphere").is_none() {
-        // What was used of late stands above it now.
-        wand.aim(LIBRARY, "Cube")?;
-        pad(&mut wand, -1.0)?;
-        wand.app.until("the library scrolls to the sphere", |now| {
-            place(now, LIBRARY, "Sphere").is_some()
-        })?;
-        pad(&mut wand, 0.0)?;
-    }
     wand.aim(LIBRARY, "Sphere")?;
     wand.trigger(true)?;
     // Off the panel's lower edge.

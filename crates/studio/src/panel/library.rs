@@ -76,10 +76,14 @@ impl Panel for LibraryPanel {
             self.host = Some(ui.ctx().clone());
         }
         ui.horizontal(|ui| {
+            // In the headset buttons are larger, and a line that is too wide makes the tiles below it larger.
+            let button = kit::width(ui, icon::STACK_PLUS, egui::TextStyle::Button)
+                + 2.0 * ui.spacing().button_padding.x
+                + ui.spacing().item_spacing.x;
             let search = egui::TextEdit::singleline(&mut self.query)
                 .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))
                 .margin(egui::Margin::symmetric(8, 6))
-                .desired_width(ui.available_width() - 84.0);
+                .desired_width(ui.available_width() - 2.0 * button - 2.0);
             ui.add(search);
             let import = ui.button(icon::DOWNLOAD_SIMPLE);
             if import
