@@ -12,8 +12,11 @@ mod threads;
 use std::sync::Arc;
 use std::time::Duration;
 
+use bevy::animation::AnimationPlugin;
 use bevy::app::ScheduleRunnerPlugin;
+use bevy::dev_tools::render_debug::RenderDebugOverlayPlugin;
 use bevy::ecs::error::{FallbackErrorHandler, warn};
+use bevy::picking::{InteractionPlugin, PickingPlugin, input::PointerInputPlugin};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::settings::{RenderCreation, WgpuSettings};
@@ -129,6 +132,13 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
         ),
         ..default()
     });
+    // Nothing here is animated or picked by the engine, and nobody looks into its buffers.
+    plugins = plugins
+        .disable::<AnimationPlugin>()
+        .disable::<PointerInputPlugin>()
+        .disable::<PickingPlugin>()
+        .disable::<InteractionPlugin>()
+        .disable::<RenderDebugOverlayPlugin>();
     if !stage.has_window() {
         plugins = plugins.disable::<WinitPlugin>();
     }

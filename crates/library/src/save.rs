@@ -2,7 +2,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use midair_field::{Node, Op, Operand, Placement, Recipe};
+use midair_field::{Placement, Recipe};
 use midair_mesh::{MeshHash, TriMesh};
 use ron::ser::PrettyConfig;
 
@@ -67,12 +67,7 @@ fn centred(recipe: &Recipe) -> Recipe {
     if centre.abs().max_element() < 5e-7 {
         return recipe.clone();
     }
-    Recipe::new(Node::Solid(vec![Operand {
-        op: Op::Union,
-        placement: Placement::at(-centre),
-        recipe: recipe.clone(),
-        muted: false,
-    }]))
+    recipe.placed(Placement::at(-centre))
 }
 
 /// Writes a component's file under the first name that is free, or already holds the same solid.

@@ -1,7 +1,6 @@
 //! The painting while a stroke is painted: made again off the frame where the stroke changes it, coarse
 //! when it has to be, and shown in the place of what the document has.
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use bevy::prelude::*;
@@ -11,7 +10,7 @@ use midair_studio::{
     evaluate::{Delivery, Evaluations, Key, Live},
     hands::Hands,
     project::Project,
-    show::{CardWrites, ObjectMap, Seen, SeenParts, Tint, display_steps, transform},
+    show::{CardWrites, ObjectMap, Seen, SeenParts, StandIn, display_steps, transform},
 };
 
 use crate::{
@@ -19,9 +18,6 @@ use crate::{
     start,
     work::{self, Studio, Work},
 };
-
-/// Figures are kept of so many pictures.
-const KEPT: usize = 4096;
 
 /// What is seen of a stroke that is not finished.
 #[derive(Resource, Default)]
@@ -33,10 +29,8 @@ pub struct Sketchpad {
     /// What the painting showed before.
     before: Option<Seen>,
     /// What shows a painting that the document does not have yet.
-    entity: Option<Entity>,
-    material: Option<Handle<StandardMaterial>>,
+    picture: StandIn,
     shown: Option<Key>,
-    took: VecDeque<Duration>,
 }
 
 impl Sketchpad {
@@ -47,7 +41,7 @@ impl Sketchpad {
 
     /// How long the latest pictures took to make.
     pub fn took(&self) -> impl Iterator<Item = Duration> + '_ {
-        self.took.iter().copied()
+        self.picture.took.iter()
     }
 
     /// Gives up what is shown.
@@ -57,9 +51,7 @@ impl Sketchpad {
         self.mesh = None;
         self.before = None;
         self.shown = None;
-        if let Some(entity) = self.entity.take() {
-            commands.entity(entity).try_despawn();
-        }
+        self.picture.clear(commands);
     }
 }
 
@@ -113,9 +105,7 @@ pub(crate) fn follow(
                 .into_iter()
                 .find_map(|step| evaluations.made(&Key::new(&r, step))?.solid.clone())
         });
-        if let Some(entity) = pad.entity.take() {
-            commands.entity(entity).try_despawn();
-        }
+        pad.picture.clear(&mut commands);
         pad.live.clear();
         if let Some(base) = base {
             pad.live.begin(base, finest);
@@ -125,10 +115,7 @@ pub(crate) fn follow(
         pad.before = None;
     }
     if let Some(sketch) = pad.live.ask(&recipe, finest, &evaluations) {
-        if pad.took.len() == KEPT {
-            pad.took.pop_front();
-        }
-        pad.took.push_back(sketch.took);
+        pad.picture.took.push(sketch.took);
         pad.shown = Some(sketch.key);
         if let Some(seen) = pad.live.draw(sketch, &mut meshes, &mut writes) {
             pad.mesh = Some(seen);
@@ -150,28 +137,9 @@ pub(crate) fn follow(
         }
         None => {
             let at = transform(&work.placement);
-            match pad.entity {
-                Some(entity) => {
-                    let mut entity = commands.entity(entity);
-                    entity.try_insert(at);
-                    mesh.worn_by(&mut entity);
-                }
-                None => {
-                    let material = pad.material.get_or_insert_with(|| {
-                        materials.add(StandardMaterial {
-                            base_color: Tint::Plain.colour(),
-                            perceptual_roughness: 0.62,
-                            reflectance: 0.35,
-                            ..default()
-                        })
-                    });
-                    let look = MeshMaterial3d(material.clone());
-                    let name = Name::new("Painting that is begun");
-                    let mut entity = commands.spawn((name, look, at));
-                    mesh.worn_by(&mut entity);
-                    pad.entity = Some(entity.id());
-                }
-            }
+            let name = "Painting that is begun";
+            pad.picture
+                .show(name, &mesh, at, &mut materials, &mut commands);
         }
     }
 }
@@ -195,7 +163,7 @@ fn rest(
     pad: &mut ResMut<Sketchpad>,
     commands: &mut Commands,
 ) {
-    if pad.begun.is_none() && pad.entity.is_none() {
+    if pad.begun.is_none() && !pad.picture.is_shown() {
         return;
     }
     let document = project.document();
@@ -213,15 +181,14 @@ fn rest(
             }
         }
     }
-    if let Some(entity) = pad.entity {
+    if pad.picture.is_shown() {
         // The new painting is shown by the document, or there is none.
         let last = document.objects().next_back().map(|(id, _)| id);
         let shown = last
             .and_then(|id| map.get(id))
             .is_none_or(|e| drawn.contains(e));
         if shown {
-            commands.entity(entity).try_despawn();
-            pad.entity = None;
+            pad.picture.clear(commands);
         }
     }
 }

@@ -1,7 +1,6 @@
 //! What the marked operands will come to, shown before it is made: coarse while a hand moves one of
 //! them, as fine as the result at rest.
 
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
@@ -10,33 +9,28 @@ use midair_studio::{
     hold::Ghosted,
     project::Project,
     settings::Settings,
-    show::{CardWrites, Drafts, Drawn, Seen, Tint},
+    show::{CardWrites, Drafts, Drawn, Latest, Seen, StandIn},
 };
 
 use crate::fuse::drafted_recipe;
-
-/// Figures are kept of so many pictures.
-const KEPT: usize = 4096;
 
 /// The preview of the marked sequence.
 #[derive(Resource, Default)]
 pub struct Preview {
     live: Live,
-    entity: Option<Entity>,
+    picture: StandIn,
     /// Where the frame of what is asked for stands.
     origin: Option<Vec3>,
     shown: Option<Key>,
-    material: Option<Handle<StandardMaterial>>,
     /// When the last picture came while a hand was moving an operand.
     before: Option<Instant>,
-    took: VecDeque<Duration>,
-    apart: VecDeque<Duration>,
+    apart: Latest,
 }
 
 impl Preview {
     /// Whether it can be seen.
     pub fn is_shown(&self) -> bool {
-        self.entity.is_some()
+        self.picture.is_shown()
     }
 
     /// What can be seen: of which recipe, at which step.
@@ -51,12 +45,12 @@ impl Preview {
 
     /// How long the latest pictures took to make.
     pub fn took(&self) -> impl Iterator<Item = Duration> + '_ {
-        self.took.iter().copied()
+        self.picture.took.iter()
     }
 
     /// How far apart they came while a hand moved an operand.
     pub fn apart(&self) -> impl Iterator<Item = Duration> + '_ {
-        self.apart.iter().copied()
+        self.apart.iter()
     }
 
     pub(crate) fn clear(&mut self, commands: &mut Commands) {
@@ -64,16 +58,14 @@ impl Preview {
         self.origin = None;
         self.shown = None;
         self.before = None;
-        if let Some(entity) = self.entity.take() {
-            commands.entity(entity).try_despawn();
-        }
+        self.picture.clear(commands);
     }
 
     fn note(&mut self, took: Duration, moving: bool) {
         let now = Instant::now();
-        push(&mut self.took, took);
+        self.picture.took.push(took);
         if let Some(before) = self.before.replace(now).filter(|_| moving) {
-            push(&mut self.apart, now - before);
+            self.apart.push(now - before);
         }
     }
 
@@ -87,33 +79,8 @@ impl Preview {
     ) {
         self.shown = Some(key);
         let at = Transform::from_translation(origin);
-        if let Some(entity) = self.entity {
-            let mut entity = commands.entity(entity);
-            entity.try_insert(at);
-            seen.worn_by(&mut entity);
-            return;
-        }
-        let material = self.material.get_or_insert_with(|| {
-            materials.add(StandardMaterial {
-                base_color: Tint::Plain.colour(),
-                perceptual_roughness: 0.62,
-                reflectance: 0.35,
-                ..default()
-            })
-        });
-        let look = MeshMaterial3d(material.clone());
-        let name = Name::new("Preview");
-        let mut entity = commands.spawn((name, look, at));
-        seen.worn_by(&mut entity);
-        self.entity = Some(entity.id());
+        self.picture.show("Preview", seen, at, materials, commands);
     }
-}
-
-fn push(kept: &mut VecDeque<Duration>, one: Duration) {
-    if kept.len() == KEPT {
-        kept.pop_front();
-    }
-    kept.push_back(one);
 }
 
 /// Shows what the marks come to. Nothing that a session makes depends on it, so a session that is

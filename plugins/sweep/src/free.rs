@@ -3,10 +3,8 @@
 
 use std::sync::Arc;
 
-use bevy::math::Vec3;
-
 use midair_document::{Edit, Group, GroupId, Kind, Object, ObjectId};
-use midair_field::{Node, Op, Operand, Place, Placement, Recipe, Row};
+use midair_field::{Node, Place, Placement, Recipe, Row};
 use midair_studio::{
     notice::Notices,
     project::{Project, Selection},
@@ -110,11 +108,7 @@ pub(crate) fn apart(project: &mut Project, selection: &mut Selection, notices: &
 /// One clone where it stands in the world. In a row that is scaled unevenly it is skewed, which no
 /// placement is: its own place then goes into its recipe.
 fn own(row: &Placement, place: &Place, recipe: &Recipe) -> (Placement, Recipe) {
-    let there = Placement {
-        translation: place.translation,
-        rotation: place.rotation,
-        scale: Vec3::splat(place.scale),
-    };
+    let there = Placement::from(place);
     let scale = row.scale;
     if scale.x == scale.y && scale.y == scale.z && scale.x > 0.0 {
         let placement = Placement {
@@ -124,11 +118,5 @@ fn own(row: &Placement, place: &Place, recipe: &Recipe) -> (Placement, Recipe) {
         };
         return (placement, recipe.clone());
     }
-    let operand = Operand {
-        op: Op::Union,
-        placement: there,
-        recipe: recipe.clone(),
-        muted: false,
-    };
-    (*row, Recipe::new(Node::Solid(vec![operand])))
+    (*row, recipe.placed(there))
 }

@@ -38,16 +38,16 @@ impl Panel for SweepPanel {
         if now.shape == SweepShape::Clones {
             self.clones(ui, world, &mut now);
         } else {
-            self.number(ui, "Points along it", &mut now.count, 2.0..=256.0, 0);
+            self.number(ui, "Points along it", &mut now.count, 2.0..=256.0, 0, "");
             if now.shape == SweepShape::Tube {
                 ui.checkbox(&mut now.caps, "Caps: closed and full");
             }
             if now.shape == SweepShape::Surface || !now.caps {
                 let mut mm = now.thickness * 1e3;
-                self.number(ui, "Thickness, mm", &mut mm, 0.0..=100.0, 1);
+                self.number(ui, "Thickness", &mut mm, 0.0..=100.0, 1, " mm");
                 now.thickness = mm * 1e-3;
             }
-            self.number(ui, "Smoothing", &mut now.smooth, 0.0..=20.0, 0);
+            self.number(ui, "Smoothing", &mut now.smooth, 0.0..=20.0, 0, "");
         }
         ui.separator();
         kit::row(ui, "Hands", |ui| {
@@ -90,9 +90,9 @@ impl SweepPanel {
                     }
                 });
         });
-        self.number(ui, "How many", &mut now.clones, 1.0..=256.0, 0);
+        self.number(ui, "How many", &mut now.clones, 1.0..=256.0, 0, "");
         let mut mm = now.clone_size * 1e3;
-        self.number(ui, "Longest side, mm", &mut mm, 1.0..=400.0, 0);
+        self.number(ui, "Longest side", &mut mm, 1.0..=400.0, 0, " mm");
         now.clone_size = mm * 1e-3;
         ui.checkbox(&mut now.paced, "Smaller where they stand closer");
         ui.checkbox(&mut now.spread, "All over the surface");
@@ -128,7 +128,7 @@ impl SweepPanel {
         ui.weak(format!("{} curves", sweep.ribs.len()));
         follows(ui, project, object, asks);
         let mut count = sweep.count;
-        if self.number(ui, "Points of it", &mut count, 2.0..=256.0, 0) && count != sweep.count {
+        if self.number(ui, "Points of it", &mut count, 2.0..=256.0, 0, "") && count != sweep.count {
             asks.push(SweepAsk::Count(count).command());
         }
         if sweep.profile == Profile::Tube {
@@ -139,7 +139,7 @@ impl SweepPanel {
         }
         if sweep.profile == Profile::Sheet || !sweep.caps {
             let mut mm = sweep.thickness * 1e3;
-            if self.number(ui, "Its thickness, mm", &mut mm, 0.0..=100.0, 1)
+            if self.number(ui, "Its thickness", &mut mm, 0.0..=100.0, 1, " mm")
                 && (mm - sweep.thickness * 1e3).abs() > 1e-3
             {
                 asks.push(SweepAsk::Thickness(mm * 1e-3).command());
@@ -170,10 +170,13 @@ impl SweepPanel {
         value: &mut N,
         range: std::ops::RangeInclusive<f32>,
         decimals: usize,
+        unit: &str,
     ) -> bool {
         let held = self.held.filter(|(n, _)| *n == name).map(|h| h.1);
         let mut now = held.unwrap_or(value.to_f64() as f32);
-        let slider = Slider::new(&mut now, range).fixed_decimals(decimals);
+        let slider = Slider::new(&mut now, range)
+            .fixed_decimals(decimals)
+            .suffix(unit);
         let response = kit::field(ui, name, slider);
         if response.dragged() || response.has_focus() && response.changed() {
             self.held = Some((name, now));

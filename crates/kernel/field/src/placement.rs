@@ -1,4 +1,5 @@
 use glam::{Affine3A, Quat, Vec3};
+use midair_swept::Place;
 use serde::{Deserialize, Serialize};
 
 /// Where a thing stands: scaled, then turned, then moved. Scale may differ per axis.
@@ -41,6 +42,17 @@ impl Placement {
             && self.rotation.is_normalized()
             && self.scale.is_finite()
             && self.scale.cmpne(Vec3::ZERO).all()
+    }
+}
+
+/// Where a clone of a row stands.
+impl From<&Place> for Placement {
+    fn from(place: &Place) -> Self {
+        Self {
+            translation: place.translation,
+            rotation: place.rotation,
+            scale: Vec3::splat(place.scale),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::bake::{BakeOptions, Progress, Volume, bake};
 use crate::canvas::{Bench, Canvas, Painting};
 use crate::leaf::{Leaf, Source};
-use crate::recipe::{placed, restricted, transformed};
+use crate::recipe::{restricted, transformed};
 use crate::shape::Shape;
 use crate::stretch::stretched;
 use crate::{Node, Op, Operand, Placement, Primitive, PrimitiveError, Recipe, RecipeError};
@@ -240,7 +240,7 @@ impl Compiler<'_> {
                 let places = row.places();
                 let operands = places.iter().map(|place| Operand {
                     op: Op::Union,
-                    placement: placed(place),
+                    placement: place.into(),
                     recipe: recipe.clone(),
                     muted: false,
                 });

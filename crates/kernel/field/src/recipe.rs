@@ -173,6 +173,19 @@ impl Recipe {
         recipe.validate().map(|()| recipe)
     }
 
+    /// The same solid standing elsewhere in its frame: one placed operand; itself where nothing changes.
+    pub fn placed(&self, placement: Placement) -> Self {
+        if placement == Placement::IDENTITY {
+            return self.clone();
+        }
+        Self::new(Node::Solid(vec![Operand {
+            op: Op::Union,
+            placement,
+            recipe: self.clone(),
+            muted: false,
+        }]))
+    }
+
     /// What it is made of.
     pub fn node(&self) -> &Node {
         &self.0.node
@@ -267,15 +280,6 @@ fn check(node: &Node) -> Result<(), RecipeError> {
     }
 }
 
-/// Where a clone stands.
-pub(crate) fn placed(place: &midair_swept::Place) -> Placement {
-    Placement {
-        translation: place.translation,
-        rotation: place.rotation,
-        scale: Vec3::splat(place.scale),
-    }
-}
-
 fn bounds_of(node: &Node) -> Aabb {
     match node {
         Node::Primitive(p) => p.bounds(),
@@ -286,7 +290,9 @@ fn bounds_of(node: &Node) -> Aabb {
         Node::Clones { row, recipe } => {
             let own = recipe.bounds();
             let each = row.places();
-            let each = each.iter().map(|p| transformed(&own, &placed(p).affine()));
+            let each = each
+                .iter()
+                .map(|p| transformed(&own, &Placement::from(p).affine()));
             each.fold(Aabb::EMPTY, |all, b| all.union(&b))
         }
         Node::Solid(operands) => {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use midair_document::{Edit, Object};
-use midair_field::{Node, Op, Operand, Placement, Recipe};
+use midair_field::Placement;
 use midair_solid::ExportOptions;
 
 use super::{
@@ -188,7 +188,11 @@ fn handle(
                     let keep = Errand::Keep {
                         folders: places.library.clone(),
                         name: object.name.clone(),
-                        recipe: scaled(recipe, object.placement.scale),
+                        // As large as it stands in the room.
+                        recipe: recipe.placed(Placement {
+                            scale: object.placement.scale,
+                            ..Placement::IDENTITY
+                        }),
                     };
                     errands.start(keep, &project);
                 }
@@ -243,23 +247,6 @@ fn handle(
     if selection.0.iter().any(|&id| document.object(id).is_none()) {
         selection.0.retain(|&id| document.object(id).is_some());
     }
-}
-
-/// A solid as large as it stands in the room.
-fn scaled(recipe: Recipe, scale: Vec3) -> Recipe {
-    if scale == Vec3::ONE {
-        return recipe;
-    }
-    let placement = Placement {
-        scale,
-        ..Placement::IDENTITY
-    };
-    Recipe::new(Node::Solid(vec![Operand {
-        op: Op::Union,
-        placement,
-        recipe,
-        muted: false,
-    }]))
 }
 
 /// The wand has picked a component: it is to appear at the hand.

@@ -9,7 +9,7 @@ use bevy::platform::collections::hash_map::Entry;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Collider;
 use midair_document::{Document, Kind, Object, ObjectId};
-use midair_field::{Node, Recipe, RecipeHash};
+use midair_field::{Node, Placement, Recipe, RecipeHash};
 use midair_gpu::Emitted;
 use midair_mesh::{MeshHash, TriMesh};
 
@@ -61,21 +61,25 @@ struct OnCard {
 }
 
 impl Showing {
-    /// What the card has made is drawn before it can be touched, if there is room for it.
+    /// What the card has made is drawn before it can be touched, if there is room for it and it is not drawn yet.
     fn draw_early(
         &mut self,
         (key, surface): (Key, Emitted),
         recipe: &Recipe,
         writes: &mut CardWrites,
         entity: &mut EntityCommands,
-    ) {
-        let Some(card) = &mut self.card else { return };
-        if card.shows != Some(key) && card.mesh.write(&surface, writes) {
-            card.shows = Some(key);
-            card.mesh
-                .seen(recipe.bounds().grown(key.step()))
-                .worn_by(entity);
+    ) -> bool {
+        let fresh = |card: &&mut OnCard| card.shows != Some(key);
+        let Some(card) = self.card.as_mut().filter(fresh) else {
+            return false;
+        };
+        if !card.mesh.write(&surface, writes) {
+            return false;
         }
+        card.shows = Some(key);
+        let around = recipe.bounds().grown(key.step());
+        card.mesh.seen(around).worn_by(entity);
+        true
     }
 
     /// Draws a solid that has come: where it lies on the card, or from main memory.
@@ -88,8 +92,8 @@ impl Showing {
         entity: &mut EntityCommands,
     ) {
         let lies_there = surface.is_some();
-        if let Some(surface) = surface {
-            self.draw_early((key, surface), recipe, writes, entity);
+        if surface.is_some_and(|s| self.draw_early((key, s), recipe, writes, entity)) {
+            return;
         }
         let around = recipe.bounds().grown(key.step());
         if let Some(card) = self.card.as_ref().filter(|c| c.shows == Some(key)) {
@@ -459,12 +463,8 @@ fn one_by_one(
     places: &[midair_field::Place],
     mesh: &Handle<Mesh>,
 ) -> Vec<(Handle<Mesh>, Transform)> {
-    let at = |p: &midair_field::Place| Transform {
-        translation: p.translation,
-        rotation: p.rotation,
-        scale: Vec3::splat(p.scale),
-    };
-    places.iter().map(|p| (mesh.clone(), at(p))).collect()
+    let at = |p| (mesh.clone(), transform(&Placement::from(p)));
+    places.iter().map(at).collect()
 }
 
 /// What a row of clones is drawn as: children of its entity, that look as it does.

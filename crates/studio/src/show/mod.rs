@@ -10,6 +10,7 @@ mod ink;
 mod material;
 mod readout;
 mod room;
+mod stand_in;
 
 use std::collections::BTreeMap;
 
@@ -26,6 +27,7 @@ pub use follow::{
 pub use form::form;
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, Unhurried, camera, headset, is_software};
+pub use stand_in::{Latest, StandIn};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
