@@ -4,6 +4,9 @@
 //! outside, in metres, and never claims more than the true distance (|∇φ| ≤ 1 up to sampling), so
 //! that whole bricks can be skipped (EasyVRModeling §5, with `papers/errata.md`).
 
+#[macro_use]
+mod wide;
+
 pub mod bake;
 mod canvas;
 mod dirty;

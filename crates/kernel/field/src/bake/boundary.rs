@@ -13,14 +13,13 @@ enum Part {
     Some(Vec<Triangle>),
 }
 
-/// The parts of `triangles[from..]` with the inside on one side and the outside on the other,
+/// The parts of `triangles[from..]`, in steps, with the inside on one side and the outside on the other,
 /// after the whole of `triangles[..from]`. Walls within a solid and sheets that lie on each other
 /// would draw φ to zero where there is no surface.
 pub(super) fn bounding(
     triangles: &[Triangle],
     from: usize,
     tree: &Tree,
-    step: f32,
     progress: &Progress,
 ) -> Result<Vec<Triangle>, BakeError> {
     let parts: Vec<Part> = triangles[from..]
@@ -30,7 +29,7 @@ pub(super) fn bounding(
                 // Too thin to have sides; its neighbours run along the same edges.
                 return Part::Nothing;
             }
-            part(t.v, t.n, tree, step, progress)
+            part(t.v, t.n, tree, progress)
         })
         .collect();
     progress.check()?;
@@ -45,7 +44,7 @@ pub(super) fn bounding(
     Ok(kept)
 }
 
-fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, step: f32, progress: &Progress) -> Part {
+fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, progress: &Progress) -> Part {
     if progress.is_cancelled() {
         return Part::All;
     }
@@ -54,11 +53,11 @@ fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, step: f32, progress: &Progress) -> P
         .fold(0.0, f32::max);
     let bounds = |w: [f32; 3]| {
         let p = v[0] * w[0] + v[1] * w[1] + v[2] * w[2];
-        let sides = tree.winding_beside(p, n * (2e-3 * step));
+        let sides = tree.winding_beside(p, n * 2e-3);
         let [above, below] = sides.map(|w| w.round() != 0.0);
         above != below
     };
-    if longest < 4.0 * step {
+    if longest < 4.0 {
         let third = 1.0 / 3.0;
         let samples = [
             [third, third, third],
@@ -70,7 +69,7 @@ fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, step: f32, progress: &Progress) -> P
         if count == 0 {
             return Part::Nothing;
         }
-        if count == samples.len() || longest < step {
+        if count == samples.len() || longest < 1.0 {
             return Part::All;
         }
     }
@@ -81,7 +80,7 @@ fn part(v: [Vec3; 3], n: Vec3, tree: &Tree, step: f32, progress: &Progress) -> P
     let (a, b, c) = (v[k], v[(k + 1) % 3], v[(k + 2) % 3]);
     let middle = 0.5 * (a + b);
     let halves = [[a, middle, c], [middle, b, c]];
-    let parts = halves.map(|h| part(h, n, tree, step, progress));
+    let parts = halves.map(|h| part(h, n, tree, progress));
     match &parts {
         [Part::All, Part::All] => Part::All,
         [Part::Nothing, Part::Nothing] => Part::Nothing,

@@ -6,7 +6,6 @@ use spade::{
 };
 
 use super::repair::{EdgeUse, by_edge};
-use super::triangle::Triangle;
 use super::{BakeError, Progress};
 
 /// Corners of a rim up to which the lid of least area is sought (its cost grows with the cube).
@@ -24,7 +23,7 @@ pub(super) fn over_holes(
     edges: &[EdgeUse],
     size: f32,
     progress: &Progress,
-) -> Result<Vec<Triangle>, BakeError> {
+) -> Result<Vec<[Vec3; 3]>, BakeError> {
     let mut lids = Vec::new();
     for (i, rim) in rims(edges).iter().enumerate() {
         if i % 64 == 0 || rim.len() > 64 {
@@ -34,7 +33,7 @@ pub(super) fn over_holes(
             .iter()
             .map(|&v| positions[v as usize].as_dvec3())
             .collect();
-        let mut add = |t: [DVec3; 3]| lids.push(Triangle::new(t.map(|p| p.as_vec3())));
+        let mut add = |t: [DVec3; 3]| lids.push(t.map(|p| p.as_vec3()));
         if points.len() == 3 {
             add([points[0], points[1], points[2]]);
         } else if !draped(&points, f64::from(size), &mut add) {

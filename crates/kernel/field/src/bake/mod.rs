@@ -1,16 +1,20 @@
 //! From a triangle mesh to a signed distance (EasyVRModeling §5.2).
 
 mod band;
+mod bars;
 mod boundary;
 mod cache;
 mod eight;
 mod frame;
+mod lanes;
 mod lids;
 mod options;
+mod points;
 mod progress;
 mod repair;
 mod sample;
 mod sign;
+mod splat;
 mod store;
 mod tree;
 mod triangle;

@@ -13,7 +13,7 @@ use super::{BakeError, Progress};
 /// A chain of triangles without boundary: every edge is passed as often one way as the other, so
 /// that the winding number is whole everywhere off the surface.
 pub(super) struct Closed {
-    pub triangles: Vec<Triangle>,
+    pub triangles: Vec<[Vec3; 3]>,
     /// Triangles from here on are lids, laid over holes.
     pub lids: usize,
 }
@@ -33,29 +33,44 @@ pub(super) struct EdgeUse {
 pub(super) fn close(mesh: &TriMesh, lid: f32, progress: &Progress) -> Result<Closed, BakeError> {
     let (positions, mut faces) = weld(mesh)?;
     progress.check()?;
-    let mut edges = edge_uses(&faces);
-    progress.check()?;
-    let mut pieces = None;
-    if !every_edge_pairs(&edges) || volume(&positions, &faces) <= 0.0 {
-        drop_repeated(&mut faces);
-        edges = edge_uses(&faces);
-        let found = orient(&positions, &mut faces, &edges);
-        edges = edge_uses(&faces);
-        pieces = Some(found);
-        progress.check()?;
-    }
-    let mut closed = with_lids(&positions, &faces, &edges, lid, progress)?;
-    let found = pieces.unwrap_or_else(|| Pieces::of(&faces, &edges));
-    let inverted = inverted_pieces(&positions, &faces, &found, &closed);
-    if !inverted.is_empty() {
-        for (f, &p) in faces.iter_mut().zip(&found.of_face) {
-            if inverted.binary_search(&p).is_ok() {
-                f.swap(1, 2);
-            }
+    let whole = paired(&faces, positions.len());
+    if let Some(pieces) = whole.filter(|_| volume(&positions, &faces) > 0.0) {
+        let mut closed = without_lids(&positions, &faces);
+        let inverted = inverted_pieces(&positions, &faces, &pieces, &[], &closed);
+        if !inverted.is_empty() {
+            turn(&mut faces, &pieces, &inverted);
+            closed = without_lids(&positions, &faces);
         }
+        return Ok(closed);
+    }
+    drop_repeated(&mut faces);
+    let edges = edge_uses(&faces);
+    let pieces = orient(&positions, &mut faces, &edges);
+    let edges = edge_uses(&faces);
+    progress.check()?;
+    let mut closed = with_lids(&positions, &faces, &edges, lid, progress)?;
+    let inverted = inverted_pieces(&positions, &faces, &pieces, &edges, &closed);
+    if !inverted.is_empty() {
+        turn(&mut faces, &pieces, &inverted);
         closed = with_lids(&positions, &faces, &edge_uses(&faces), lid, progress)?;
     }
     Ok(closed)
+}
+
+fn turn(faces: &mut [[u32; 3]], pieces: &Pieces, which: &[u32]) {
+    for (f, &p) in faces.iter_mut().zip(&pieces.of_face) {
+        if which.binary_search(&p).is_ok() {
+            f.swap(1, 2);
+        }
+    }
+}
+
+fn without_lids(positions: &[Vec3], faces: &[[u32; 3]]) -> Closed {
+    let corners = |f: &[u32; 3]| f.map(|v| positions[v as usize]);
+    Closed {
+        triangles: faces.iter().map(corners).collect(),
+        lids: faces.len(),
+    }
 }
 
 fn with_lids(
@@ -65,16 +80,10 @@ fn with_lids(
     lid: f32,
     progress: &Progress,
 ) -> Result<Closed, BakeError> {
-    let mut triangles: Vec<Triangle> = faces
-        .par_iter()
-        .map(|f| Triangle::new(f.map(|v| positions[v as usize])))
-        .collect();
-    let count = triangles.len();
-    triangles.extend(lids::over_holes(positions, edges, lid, progress)?);
-    Ok(Closed {
-        triangles,
-        lids: count,
-    })
+    let mut closed = without_lids(positions, faces);
+    let lids = lids::over_holes(positions, edges, lid, progress)?;
+    closed.triangles.extend(lids);
+    Ok(closed)
 }
 
 /// Vertices at one place become one; triangles that then name a vertex twice are dropped.
@@ -150,9 +159,43 @@ pub(super) fn by_edge(edges: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
 }
 
-/// Whether each edge is shared by two triangles that pass it in opposite directions.
-fn every_edge_pairs(edges: &[EdgeUse]) -> bool {
-    by_edge(edges).all(|e| e.len() == 2 && e[0].forward != e[1].forward)
+/// The pieces of a mesh each of whose edges is shared by two triangles that pass it in opposite
+/// directions; `None` for any other.
+fn paired(faces: &[[u32; 3]], vertices: usize) -> Option<Pieces> {
+    let sides = |f: &[u32; 3]| [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])];
+    let mut ends = vec![0u32; vertices + 1];
+    for (a, b) in faces.iter().flat_map(sides) {
+        ends[a.min(b) as usize + 1] += 1;
+    }
+    for i in 1..ends.len() {
+        ends[i] += ends[i - 1];
+    }
+    // The other end, whether that is where the triangle goes, and the triangle.
+    let mut uses = vec![(0u32, false, 0u32); 3 * faces.len()];
+    let mut cursor = ends.clone();
+    for (t, f) in faces.iter().enumerate() {
+        for (a, b) in sides(f) {
+            let c = &mut cursor[a.min(b) as usize];
+            uses[*c as usize] = (a.max(b), a < b, t as u32);
+            *c += 1;
+        }
+    }
+    let mut up: Vec<u32> = (0..faces.len() as u32).collect();
+    for v in 0..vertices {
+        let own = &mut uses[ends[v] as usize..ends[v + 1] as usize];
+        own.sort_unstable();
+        for edge in own.chunk_by(|a, b| a.0 == b.0) {
+            let &[(_, back, one), (_, forth, other)] = edge else {
+                return None;
+            };
+            if back == forth {
+                return None;
+            }
+            let (a, b) = (root(&mut up, one), root(&mut up, other));
+            up[a.max(b) as usize] = a.min(b);
+        }
+    }
+    Some(Pieces::numbered(up))
 }
 
 fn six_volumes(p: &[Vec3], f: &[u32; 3], from: DVec3) -> f64 {
@@ -189,9 +232,14 @@ impl Pieces {
             let (a, b) = (root(&mut up, e[0].triangle), root(&mut up, e[1].triangle));
             up[a.max(b) as usize] = a.min(b);
         }
-        let mut number = vec![u32::MAX; faces.len()];
+        Self::numbered(up)
+    }
+
+    /// From a forest of parents, by the first face of each.
+    fn numbered(mut up: Vec<u32>) -> Self {
+        let mut number = vec![u32::MAX; up.len()];
         let mut count = 0;
-        let of_face = (0..faces.len() as u32)
+        let of_face = (0..up.len() as u32)
             .map(|f| {
                 let r = root(&mut up, f) as usize;
                 if number[r] == u32::MAX {
@@ -311,6 +359,7 @@ fn inverted_pieces(
     positions: &[Vec3],
     faces: &[[u32; 3]],
     pieces: &Pieces,
+    edges: &[EdgeUse],
     closed: &Closed,
 ) -> Vec<u32> {
     /// Places tried on each piece.
@@ -320,7 +369,7 @@ fn inverted_pieces(
     }
     let volumes = {
         // Rims do not matter here: a piece with one is measured with its lids by the sign alone.
-        piece_volumes(positions, faces, pieces, &edge_uses(faces))
+        piece_volumes(positions, faces, pieces, edges)
     };
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); pieces.count];
     for (f, &p) in pieces.of_face.iter().enumerate() {
@@ -331,7 +380,12 @@ fn inverted_pieces(
     if members.iter().all(Vec::is_empty) {
         return Vec::new();
     }
-    let tree = Tree::new(&closed.triangles);
+    let triangles: Vec<Triangle> = closed
+        .triangles
+        .par_iter()
+        .map(|t| Triangle::new(*t))
+        .collect();
+    let tree = Tree::new(&triangles);
     (0..pieces.count as u32)
         .into_par_iter()
         .filter(|&p| {
@@ -339,7 +393,7 @@ fn inverted_pieces(
             let solid = (0..SAMPLES)
                 .filter(|s| {
                     !m.is_empty() && {
-                        let t = &closed.triangles[m[s * m.len() / SAMPLES] as usize];
+                        let t = &triangles[m[s * m.len() / SAMPLES] as usize];
                         // The normal of an inverted piece points into it: what surrounds it is behind.
                         let c = (t.v[0] + t.v[1] + t.v[2]) / 3.0;
                         let behind = c - t.n * 1e-3 * (t.v[1] - t.v[0]).length();

@@ -1,267 +1,190 @@
-//! Which nodes are inside.
+//! Which nodes are inside: the triangles that a ray along x passes, counted for each row of nodes.
 
-use glam::{IVec3, UVec3, Vec3};
+use glam::{DVec2, UVec2, UVec3, Vec3};
 use rayon::prelude::*;
 
-use super::band::{BLOCK, Band, NONE, SPLAT, node_in_block};
-use super::frame::{SIDE, at};
-use super::repair::root;
-use super::tree::Tree;
+use super::band::Band;
+use super::bars::Bars;
+use super::frame::SIDE;
+use super::points::NONE;
+use super::triangle::Triangle;
 use super::{BakeError, Progress};
 
-/// A corner of far bricks that lies in no block.
-#[derive(Clone, Copy)]
-pub(super) struct Corner {
-    pub distance: f32,
-    pub triangle: u32,
+/// How often a row of nodes is moved a little where it runs so close along a corner that rounding
+/// made its triangles disagree.
+const TRIES: u32 = 8;
+
+/// The nodes inside a chain of triangles without boundary: where its winding number, which is whole,
+/// is not zero.
+pub(super) struct Signs {
+    /// By slot, a bit for each node, a word for each z.
+    pub blocks: Vec<[u64; SIDE]>,
+    /// The first node of every block, whether it has a slot or not.
+    pub corners: Vec<bool>,
+    /// Whether all winding numbers at nodes are 0 or 1, as they are around a surface that does not
+    /// cross itself.
+    pub simple: bool,
 }
 
-/// The nodes that no triangle separates, as far as can be told from their distances.
-pub(super) struct Regions {
-    /// The region of each node of each block, and of each corner in no block.
-    labels: Vec<[u16; BLOCK]>,
-    first_label: Vec<u32>,
-    first_corner: u32,
-    up: Vec<u32>,
-    /// For each root its node furthest from the surface.
-    deepest: Vec<(f32, Vec3)>,
-}
+/// A passed triangle: the row within its bar, the first node after it, and how the winding number
+/// changes.
+type Crossing = (u32, u32, i32);
 
-/// Whether a ball around each of two nodes that holds no triangle meets the other, so that nothing
-/// lies between them. Only distances below the splat's reach are exact, a longer one stands for it.
-#[inline]
-fn joined(a: f32, b: f32, apart: f32, step: f32) -> bool {
-    let exact = SPLAT * step;
-    a.min(exact) + b.min(exact) > apart * 1.0001
-}
-
-impl Regions {
-    pub fn find(band: &Band, corners: &[Corner], progress: &Progress) -> Result<Self, BakeError> {
-        let found: Vec<([u16; BLOCK], Vec<(f32, u16)>)> = (0..band.blocks.len())
-            .into_par_iter()
-            .map(|s| within_block(band, s))
-            .collect();
-        progress.check()?;
-        let mut first_label = Vec::with_capacity(found.len());
-        let mut deepest = Vec::new();
-        for (s, (_, regions)) in found.iter().enumerate() {
-            first_label.push(deepest.len() as u32);
-            let first = band.places[s] * SIDE as u32;
-            deepest.extend(
-                regions
-                    .iter()
-                    .map(|&(d, i)| (d, band.frame.node(first + node_in_block(i as usize)))),
-            );
-        }
-        let first_corner = deepest.len() as u32;
-        for (i, c) in corners.iter().enumerate() {
-            let p = band.frame.node(at(band.size, i) * SIDE as u32);
-            deepest.push((c.distance, p));
-        }
-        let mut regions = Self {
-            labels: found.into_iter().map(|f| f.0).collect(),
-            first_label,
-            first_corner,
-            up: (0..deepest.len() as u32).collect(),
-            deepest,
+impl Signs {
+    pub fn new(band: &Band, bars: &Bars, progress: &Progress) -> Result<Self, BakeError> {
+        let n = band.size;
+        let mut signs = Self {
+            blocks: Vec::with_capacity(band.places.len()),
+            corners: Vec::with_capacity(band.slots.len()),
+            simple: true,
         };
-        let pairs: Vec<Vec<(u32, u32)>> = (0..band.blocks.len())
-            .into_par_iter()
-            .map(|s| regions.across_blocks(band, s))
-            .collect();
-        progress.check()?;
-        for (a, b) in pairs.into_iter().flatten() {
-            regions.join(a, b);
-        }
-        // No triangle comes near a far brick: its corners are in one region.
-        for b in (0..band.near.len()).filter(|&b| !band.near[b]) {
-            let low = band.frame.brick_at(b);
-            let first = regions.corner(band, low);
-            for k in 1..8 {
-                let other = regions.corner(band, low + UVec3::new(k & 1, k >> 1 & 1, k >> 2));
-                regions.join(first, other);
-            }
-        }
-        Ok(regions)
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (root(&mut self.up, a), root(&mut self.up, b));
-        if a != b {
-            let (low, high) = (a.min(b), a.max(b));
-            self.up[high as usize] = low;
-            if self.deepest[high as usize].0 > self.deepest[low as usize].0 {
-                self.deepest[low as usize] = self.deepest[high as usize];
-            }
-        }
-    }
-
-    fn corner(&self, band: &Band, place: UVec3) -> u32 {
-        let slot = band.slot(place);
-        if slot != NONE {
-            return self.label(slot as usize, 0);
-        }
-        self.first_corner + place.x + band.size.x * (place.y + band.size.y * place.z)
-    }
-
-    fn label(&self, slot: usize, node: usize) -> u32 {
-        self.first_label[slot] + u32::from(self.labels[slot][node])
-    }
-
-    fn across_blocks(&self, band: &Band, s: usize) -> Vec<(u32, u32)> {
-        let step = band.frame.step;
-        let block = &band.blocks[s];
-        let mut pairs = Vec::new();
-        let mut add = |i: usize, offset: IVec3| {
-            let q = node_in_block(i).as_ivec3() + offset;
-            let away = q.div_euclid(IVec3::splat(SIDE as i32));
-            if away == IVec3::ZERO {
-                return;
-            }
-            let n = band.slot_beside(band.places[s], away);
-            if n == NONE {
-                return;
-            }
-            let q = q - away * SIDE as i32;
-            let j = (q.x + 8 * (q.y + 8 * q.z)) as usize;
-            let there = self.labels[n as usize][j];
-            let apart = (offset.length_squared() as f32).sqrt() * step;
-            if there != u16::MAX
-                && joined(
-                    block.distance[i],
-                    band.blocks[n as usize].distance[j],
-                    apart,
-                    step,
-                )
-            {
-                pairs.push((self.label(s, i), self.label(n as usize, j)));
-            }
-        };
-        for i in 0..BLOCK {
-            if self.labels[s][i] == u16::MAX {
-                continue;
-            }
-            let p = node_in_block(i);
-            if p.min_element() > 0 && p.max_element() < SIDE as u32 - 1 {
-                continue;
-            }
-            if block.distance[i] < 0.6 * step {
-                for o in 0..27 {
-                    add(i, at(UVec3::splat(3), o).as_ivec3() - 1);
-                }
-            } else {
-                add(i, IVec3::X);
-                add(i, IVec3::Y);
-                add(i, IVec3::Z);
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
-    }
-
-    /// Asks the winding number once in each region. Returns whether each label is inside, and
-    /// whether all numbers were 0 or 1, as they are around a surface that does not cross itself.
-    pub fn inside(
-        &mut self,
-        tree: &Tree,
-        progress: &Progress,
-    ) -> Result<(Inside, bool), BakeError> {
-        let roots: Vec<u32> = (0..self.up.len() as u32)
-            .filter(|&i| self.up[i as usize] == i && self.deepest[i as usize].0.is_finite())
-            .collect();
-        let answers: Vec<i32> = roots
-            .par_iter()
-            .map(|&r| {
+        for layers in &bars.groups {
+            let group = bars.group(layers, progress)?;
+            let one = |i: usize| {
+                let place = UVec3::new(0, i as u32 % n.y, layers.start + i as u32 / n.y);
                 if progress.is_cancelled() {
-                    return 0;
+                    return Self::of(&[], Vec::new(), n.x);
                 }
-                tree.winding(self.deepest[r as usize].1).round() as i32
-            })
-            .collect();
-        progress.check()?;
-        let simple = answers.iter().all(|w| (0..=1).contains(w));
-        let mut of_root = vec![false; self.up.len()];
-        for (&r, &w) in roots.iter().zip(&answers) {
-            of_root[r as usize] = w != 0;
+                let row = (n.x * (place.y + n.y * place.z)) as usize;
+                let slots = &band.slots[row..row + n.x as usize];
+                Self::of(slots, crossings(place, group.of(i), bars.triangles), n.x)
+            };
+            let found: Vec<Self> = (0..group.len()).into_par_iter().map(one).collect();
+            progress.check()?;
+            for bar in found {
+                signs.blocks.extend(bar.blocks);
+                signs.corners.extend(bar.corners);
+                signs.simple &= bar.simple;
+            }
         }
-        let of_label = (0..self.up.len() as u32)
-            .map(|i| of_root[root(&mut self.up, i) as usize])
-            .collect();
-        Ok((Inside { of_label }, simple))
+        Ok(signs)
     }
 
-    /// The signs of the nodes of block `slot`, applied to `distances`.
-    pub fn sign(&self, inside: &Inside, slot: usize, distances: &mut [f32; BLOCK]) {
-        for (d, &l) in distances.iter_mut().zip(&self.labels[slot]) {
-            if l != u16::MAX && inside.of_label[self.first_label[slot] as usize + l as usize] {
-                *d = -*d;
+    /// Those of one bar, `length` blocks long.
+    fn of(slots: &[u32], mut crossings: Vec<Crossing>, length: u32) -> Self {
+        let mut signs = Self {
+            blocks: vec![[0; SIDE]; slots.iter().filter(|s| **s != NONE).count()],
+            corners: vec![false; length as usize],
+            simple: true,
+        };
+        let first = slots.iter().copied().find(|s| *s != NONE).unwrap_or(0);
+        let end = length * SIDE as u32;
+        crossings.sort_unstable_by_key(|c| (c.0, c.1));
+        for row in crossings.chunk_by(|a, b| a.0 == b.0) {
+            let mut winding = 0;
+            for (i, c) in row.iter().enumerate() {
+                winding += c.2;
+                let to = row.get(i + 1).map_or(end, |c| c.1).min(end);
+                if winding == 0 || c.1 >= to {
+                    continue;
+                }
+                signs.simple &= winding == 1;
+                for x in c.1 / SIDE as u32..to.div_ceil(SIDE as u32) {
+                    let from = c.1.saturating_sub(SIDE as u32 * x);
+                    let to = (to - SIDE as u32 * x).min(SIDE as u32);
+                    let bits = (0xffu64 << from) & (0xff >> (SIDE as u32 - to));
+                    signs.corners[x as usize] |= c.0 == 0 && from == 0;
+                    let slot = slots.get(x as usize).copied().unwrap_or(NONE);
+                    if slot != NONE {
+                        let (y, z) = (c.0 as usize % SIDE, c.0 as usize / SIDE);
+                        signs.blocks[(slot - first) as usize][z] |= bits << (8 * y);
+                    }
+                }
+            }
+        }
+        signs
+    }
+}
+
+/// Where triangles pass the rows of the bar that begins with block `place`.
+fn crossings(place: UVec3, ids: &[u32], triangles: &[Triangle]) -> Vec<Crossing> {
+    let first = UVec2::new(place.y, place.z) * SIDE as u32;
+    let low = first.as_vec2();
+    let high = low + (SIDE - 1) as f32;
+    let mut found = Vec::new();
+    let mut turns = [0i32; SIDE * SIDE];
+    for &id in ids {
+        let t = &triangles[id as usize];
+        let [a, b, c] = t.v;
+        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+        let (y0, y1) = (least.y.ceil().max(low.x), most.y.floor().min(high.x));
+        let (z0, z1) = (least.z.ceil().max(low.y), most.z.floor().min(high.y));
+        if !(y0 <= y1 && z0 <= z1) {
+            continue;
+        }
+        for z in z0 as u32..=z1 as u32 {
+            for y in y0 as u32..=y1 as u32 {
+                let at = DVec2::new(f64::from(y), f64::from(z));
+                if let Some((x, turn)) = through(t.v, at) {
+                    let row = y - first.x + SIDE as u32 * (z - first.y);
+                    turns[row as usize] += turn;
+                    found.push((row, x, turn));
+                }
             }
         }
     }
-
-    /// Whether corner `i` in no block is inside.
-    pub fn corner_inside(&self, inside: &Inside, i: usize) -> bool {
-        inside.of_label[self.first_corner as usize + i]
+    for row in (0..turns.len() as u32).filter(|r| turns[*r as usize] != 0) {
+        found.retain(|c| c.0 != row);
+        let at = first + UVec2::new(row % SIDE as u32, row / SIDE as u32);
+        found.extend(beside(row, at, ids, triangles));
     }
+    found
 }
 
-/// Whether each region is inside.
-pub(super) struct Inside {
-    of_label: Vec<bool>,
+/// The crossings of a row that was moved until they add up to nothing.
+fn beside(row: u32, at: UVec2, ids: &[u32], triangles: &[Triangle]) -> Vec<Crossing> {
+    let mut found = Vec::new();
+    for k in 1..=TRIES {
+        let at = at.as_dvec2() + DVec2::new(1.3e-4, 0.7e-4) * f64::from(k);
+        let all = ids
+            .iter()
+            .filter_map(|id| through(triangles[*id as usize].v, at));
+        found = all.map(|(x, turn)| (row, x, turn)).collect();
+        if found.iter().map(|c| c.2).sum::<i32>() == 0 {
+            break;
+        }
+    }
+    found
 }
 
-/// The regions among the nodes of one block, numbered from 0, with the deepest node of each.
-fn within_block(band: &Band, s: usize) -> ([u16; BLOCK], Vec<(f32, u16)>) {
-    let step = band.frame.step;
-    let d = &band.blocks[s].distance;
-    let needed = |i: usize| band.masks[s][i / 64] >> (i % 64) & 1 == 1;
-    let mut up: [u16; BLOCK] = std::array::from_fn(|i| i as u16);
-    fn find(up: &mut [u16; BLOCK], mut i: u16) -> u16 {
-        while up[i as usize] != i {
-            up[i as usize] = up[up[i as usize] as usize];
-            i = up[i as usize];
-        }
-        i
+/// Where the ray along x at (y, z) passes a triangle: the first node after that, and how the winding
+/// number changes. A ray through a side or a corner counts as one a little beside it, by the same
+/// amount for all triangles.
+#[inline]
+fn through(v: [Vec3; 3], at: DVec2) -> Option<(u32, i32)> {
+    let p = v.map(|v| DVec2::new(f64::from(v.y), f64::from(v.z)));
+    let (a, left) = side(p[1], p[2], at);
+    let (b, same) = side(p[2], p[0], at);
+    if same != left {
+        return None;
     }
-    let mut join = |i: usize, j: usize, apart: f32| {
-        if needed(j) && joined(d[i], d[j], apart, step) {
-            let (a, b) = (find(&mut up, i as u16), find(&mut up, j as u16));
-            up[a.max(b) as usize] = a.min(b);
-        }
+    let (c, same) = side(p[0], p[1], at);
+    let sum = a + b + c;
+    if same != left || sum == 0.0 {
+        return None;
+    }
+    let [u, v, w] = v.map(|v| f64::from(v.x));
+    let x = ((a * u + b * v + c * w) / sum).clamp(u.min(v).min(w), u.max(v).max(w));
+    // Seen against x, what turns anticlockwise faces that way: it is left there. Places are no finer
+    // than single precision, in which two sheets at one place are passed together.
+    Some(((x as f32).ceil().max(0.0) as u32, if left { -1 } else { 1 }))
+}
+
+/// Twice the area between a side and a point, and whether the point lies on its left: the same for the
+/// side the other way round, but for the sign.
+#[inline]
+fn side(a: DVec2, b: DVec2, at: DVec2) -> (f64, bool) {
+    let swap = (a.x, a.y) > (b.x, b.y);
+    let (from, to) = if swap { (b, a) } else { (a, b) };
+    let (way, off) = (to - from, at - from);
+    let area = way.x * off.y - way.y * off.x;
+    // A point on the side counts as moved by ε along y and ε² along z.
+    let left = if area != 0.0 {
+        area > 0.0
+    } else if way.y != 0.0 {
+        way.y < 0.0
+    } else {
+        way.x > 0.0
     };
-    for i in (0..BLOCK).filter(|&i| needed(i)) {
-        let p = node_in_block(i);
-        for (k, stride) in [1, SIDE, SIDE * SIDE].into_iter().enumerate() {
-            if p[k] < SIDE as u32 - 1 {
-                join(i, i + stride, step);
-            }
-        }
-        if d[i] < 0.6 * step {
-            for o in 0..27 {
-                let q = p.as_ivec3() + at(UVec3::splat(3), o).as_ivec3() - 1;
-                if o != 13 && q.min_element() >= 0 && q.max_element() < SIDE as i32 {
-                    let apart = ((q - p.as_ivec3()).length_squared() as f32).sqrt() * step;
-                    join(i, (q.x + 8 * (q.y + 8 * q.z)) as usize, apart);
-                }
-            }
-        }
-    }
-    let mut labels = [u16::MAX; BLOCK];
-    let mut regions: Vec<(f32, u16)> = Vec::new();
-    for i in (0..BLOCK).filter(|&i| needed(i)) {
-        // A root is the lowest of its region, so it was numbered before the rest.
-        let r = find(&mut up, i as u16) as usize;
-        if r == i {
-            labels[i] = regions.len() as u16;
-            regions.push((d[i], i as u16));
-        } else {
-            labels[i] = labels[r];
-            let best = &mut regions[labels[r] as usize];
-            if d[i] > best.0 {
-                *best = (d[i], i as u16);
-            }
-        }
-    }
-    (labels, regions)
+    if swap { (-area, !left) } else { (area, left) }
 }

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::volume::{FAR_LEN, MOST_VALUES, NEAR, NEAR_LEN, Volume, groups_of, summary_of};
 
 /// What every stored volume begins with. The last byte is the version of the layout.
-const MAGIC: [u8; 8] = *b"mdrvol\0\x02";
+const MAGIC: [u8; 8] = *b"mdrvol\0\x03";
 const CHECKSUM: usize = 32;
 
 /// The version of the layout and of what a bake gives: a volume of another one is baked anew.

@@ -1,23 +1,39 @@
+use std::sync::OnceLock;
+
 use glam::{Mat3, Vec3};
 use midair_mesh::Aabb;
 use rayon::prelude::*;
 
-use super::eight::{EIGHT, Eight};
+use super::eight::offsets;
+use super::lanes::{EIGHT, F8, Lanes, Simd, lanes};
 use super::triangle::Triangle;
 
-/// Triangles in a leaf, and children of a node.
+/// Triangles in a leaf, and children of a node where moments are summed.
 const LEAF: usize = EIGHT;
 const FAN: usize = 4;
 /// A node is taken as one far source when the point is this many radii away
 /// (Barill et al. 2018, §4: 2 keeps the error under a hundredth).
 const BETA: f32 = 2.0;
 
-/// The triangles of a mesh along a Morton curve, with a packed tree of boxes over them. It answers
-/// the two questions a bake asks of a whole mesh: the closest triangle, and the winding number.
+/// The triangles of a mesh along a Morton curve, with packed trees over them. It answers the two
+/// questions a bake asks of a whole mesh: the closest triangle, and the winding number.
 pub(super) struct Tree<'a> {
     triangles: &'a [Triangle],
     order: Vec<u32>,
-    leaves: Vec<Eight>,
+    /// By level, leaves first: the boxes of eight at a time.
+    boxes: Vec<Vec<Boxes>>,
+    moments: OnceLock<Moments>,
+}
+
+/// Eight boxes side by side, by axis; those that are missing are beyond all measure.
+#[derive(Clone)]
+struct Boxes {
+    min: [Lanes; 3],
+    max: [Lanes; 3],
+}
+
+/// What the winding number is summed from.
+struct Moments {
     /// Leaves first, then each level of parents, the root last.
     nodes: Vec<Node>,
     /// Where each level begins in `nodes`, leaves first.
@@ -55,39 +71,30 @@ impl<'a> Tree<'a> {
         keyed.par_sort_unstable();
         let order: Vec<u32> = keyed.into_iter().map(|(_, i)| i).collect();
 
-        let mut nodes: Vec<Node> = order
-            .par_chunks(LEAF)
-            .map(|leaf| Node::leaf(leaf, triangles))
-            .collect();
-        let leaves = order
-            .par_chunks(LEAF)
-            .map(|leaf| Eight::new(leaf, triangles))
-            .collect();
-        let mut levels = vec![0];
-        let mut begin = 0;
-        while nodes.len() - begin > 1 {
-            let above: Vec<Node> = nodes[begin..].par_chunks(FAN).map(Node::parent).collect();
-            begin = nodes.len();
-            levels.push(begin);
-            nodes.extend(above);
+        let leaf = |l: &[u32]| {
+            let corners = l.iter().flat_map(|t| triangles[*t as usize].v);
+            corners.fold(Aabb::EMPTY, |b, p| b.including(p))
+        };
+        let mut bounds: Vec<Aabb> = order.par_chunks(LEAF).with_min_len(64).map(leaf).collect();
+        let mut boxes = Vec::new();
+        loop {
+            boxes.push(bounds.chunks(EIGHT).map(Boxes::new).collect::<Vec<_>>());
+            if bounds.len() <= EIGHT {
+                break;
+            }
+            let union = |b: &[Aabb]| b.iter().fold(Aabb::EMPTY, |all, b| all.union(b));
+            bounds = bounds.chunks(EIGHT).map(union).collect();
         }
         Self {
             triangles,
             order,
-            leaves,
-            nodes,
-            levels,
+            boxes,
+            moments: OnceLock::new(),
         }
     }
 
     pub fn triangles(&self) -> &'a [Triangle] {
         self.triangles
-    }
-
-    fn children(&self, level: usize, node: usize) -> std::ops::Range<usize> {
-        let first = self.levels[level - 1];
-        let i = (node - self.levels[level]) * FAN;
-        first + i..(first + i + FAN).min(self.levels[level])
     }
 
     fn leaf(&self, node: usize) -> &[u32] {
@@ -103,44 +110,30 @@ impl<'a> Tree<'a> {
             let d = self.triangles[t as usize].distance_squared(p);
             best.0 = d * 1.000_1 + f32::MIN_POSITIVE;
         }
-        let mut stack = [(0.0f32, 0u32, 0u32); 64];
-        let mut top = 1;
-        stack[0] = (
-            0.0,
-            self.levels.len() as u32 - 1,
-            self.nodes.len() as u32 - 1,
-        );
-        while top > 0 {
-            top -= 1;
-            let (near, level, node) = stack[top];
-            if near > best.0 {
-                continue;
-            }
-            if level == 0 {
-                let found = self.leaves[node as usize].distances(p);
-                for (&t, d) in self.leaf(node as usize).iter().zip(found) {
-                    if (d, t) < best {
-                        best = (d, t);
-                    }
-                }
-                continue;
-            }
-            let begin = top;
-            for child in self.children(level as usize, node as usize) {
-                let b = &self.nodes[child].bounds;
-                let d = (b.min - p).max(p - b.max).max(Vec3::ZERO).length_squared();
-                if d <= best.0 {
-                    stack[top] = (d, level - 1, child as u32);
-                    top += 1;
-                }
-            }
-            // The nearest child is opened first.
-            stack[begin..top].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
-        }
+        search(self, p, &mut best);
         match guess {
             Some(t) if best.1 == u32::MAX => (self.triangles[t as usize].distance_squared(p), t),
             _ => best,
         }
+    }
+
+    fn moments(&self) -> &Moments {
+        self.moments.get_or_init(|| {
+            let mut nodes: Vec<Node> = self
+                .order
+                .par_chunks(LEAF)
+                .map(|leaf| Node::leaf(leaf, self.triangles))
+                .collect();
+            let mut levels = vec![0];
+            let mut begin = 0;
+            while nodes.len() - begin > 1 {
+                let above: Vec<Node> = nodes[begin..].par_chunks(FAN).map(Node::parent).collect();
+                begin = nodes.len();
+                levels.push(begin);
+                nodes.extend(above);
+            }
+            Moments { nodes, levels }
+        })
     }
 
     /// The generalised winding number of the triangles around `p`.
@@ -191,13 +184,17 @@ impl<'a> Tree<'a> {
         mut far: impl FnMut(&Node, Vec3, f32),
         mut near: impl FnMut(&Node, &[u32]),
     ) {
+        let moments = self.moments();
         let mut stack = [(0u32, 0u32); 64];
         let mut top = 1;
-        stack[0] = (self.levels.len() as u32 - 1, self.nodes.len() as u32 - 1);
+        stack[0] = (
+            moments.levels.len() as u32 - 1,
+            moments.nodes.len() as u32 - 1,
+        );
         while top > 0 {
             top -= 1;
             let (level, node) = stack[top];
-            let n = &self.nodes[node as usize];
+            let n = &moments.nodes[node as usize];
             let r = n.centre - p;
             let d2 = r.length_squared();
             if d2 > (BETA * BETA * n.radius * n.radius).max(least) {
@@ -205,11 +202,98 @@ impl<'a> Tree<'a> {
             } else if level == 0 {
                 near(n, self.leaf(node as usize));
             } else {
-                for child in self.children(level as usize, node as usize) {
+                for child in moments.children(level as usize, node as usize) {
                     stack[top] = (level - 1, child as u32);
                     top += 1;
                 }
             }
+        }
+    }
+}
+
+impl Moments {
+    fn children(&self, level: usize, node: usize) -> std::ops::Range<usize> {
+        let first = self.levels[level - 1];
+        let i = (node - self.levels[level]) * FAN;
+        first + i..(first + i + FAN).min(self.levels[level])
+    }
+}
+
+impl Boxes {
+    /// Of up to eight.
+    fn new(bounds: &[Aabb]) -> Self {
+        let mut all = Self {
+            min: [[f32::INFINITY; EIGHT]; 3],
+            max: [[f32::INFINITY; EIGHT]; 3],
+        };
+        for (i, b) in bounds.iter().enumerate() {
+            for k in 0..3 {
+                (all.min[k][i], all.max[k][i]) = (b.min[k], b.max[k]);
+            }
+        }
+        all
+    }
+
+    /// The squared distance of each from `p`.
+    #[inline(always)]
+    fn squares<S: Simd>(&self, s: S, p: &[F8<S>; 3]) -> F8<S> {
+        let mut all = F8::splat(s, 0.0);
+        for (k, p) in p.iter().enumerate() {
+            let below = F8::load(s, &self.min[k], 0) - *p;
+            let above = *p - F8::load(s, &self.max[k], 0);
+            let gap = below.max(above).max(F8::splat(s, 0.0));
+            all = all + gap * gap;
+        }
+        all
+    }
+}
+
+lanes!(search, search_avx2, search_any, (tree: &Tree, p: Vec3, best: &mut (f32, u32)));
+
+/// Takes over the closest triangle if it is closer than the best.
+#[inline(always)]
+fn search_any<S: Simd>(s: S, tree: &Tree, p: Vec3, best: &mut (f32, u32)) {
+    let places = [F8::splat(s, p.x), F8::splat(s, p.y), F8::splat(s, p.z)];
+    // Of each level no more than eight wait.
+    let mut stack = [(0.0f32, 0u32, 0u32); 96];
+    let mut top = 1;
+    stack[0] = (0.0, tree.boxes.len() as u32, 0);
+    while top > 0 {
+        top -= 1;
+        let (near, level, node) = stack[top];
+        if near > best.0 {
+            continue;
+        }
+        if level == 0 {
+            let leaf = tree.leaf(node as usize);
+            let ids = std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)]);
+            let squares = offsets(s, tree.triangles, &ids, places).square;
+            for (&t, d) in ids.iter().zip(squares.lanes()) {
+                if (d, t) < *best {
+                    *best = (d, t);
+                }
+            }
+            continue;
+        }
+        let group = &tree.boxes[level as usize - 1][node as usize];
+        let squares = group.squares(s, &places);
+        // Those that are missing are infinitely far.
+        let most = F8::splat(s, best.0.min(f32::MAX) * (1.0 + f32::EPSILON));
+        let mut open = squares.less(most).bits();
+        let squares = squares.lanes();
+        let begin = top;
+        while open != 0 {
+            let i = open.trailing_zeros();
+            open &= open - 1;
+            // The nearest child is opened first.
+            let d = squares[i as usize];
+            let mut at = top;
+            while at > begin && stack[at - 1].0 < d {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = (d, level - 1, node * EIGHT as u32 + i);
+            top += 1;
         }
     }
 }

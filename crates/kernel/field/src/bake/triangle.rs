@@ -6,12 +6,16 @@ const THINNEST: f32 = 1e-4;
 
 /// A triangle made ready for distances: one cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub(super) struct Triangle {
     pub v: [Vec3; 3],
     /// Unit normal; zero where the triangle is too thin to have one.
     pub n: Vec3,
     /// One over the squared length of the side that starts at each corner; 0 for no length.
     pub inverse: [f32; 3],
+    /// What is not above, measured by the sides, lies over the triangle itself: 0, or less than all
+    /// numbers for a thin one.
+    pub limit: f32,
 }
 
 impl Triangle {
@@ -29,7 +33,17 @@ impl Triangle {
         } else {
             Vec3::ZERO
         };
-        Self { v, n, inverse }
+        let limit = if n == Vec3::ZERO {
+            f32::NEG_INFINITY
+        } else {
+            0.0
+        };
+        Self {
+            v,
+            n,
+            inverse,
+            limit,
+        }
     }
 
     /// Whether it is too thin to have a normal.
@@ -69,40 +83,6 @@ impl Triangle {
     #[inline]
     pub fn distance_squared(&self, p: Vec3) -> f32 {
         self.offset(p).length_squared()
-    }
-
-    /// Squared distances from the eight points (`x[i]`, `y`, `z`). Straight-line code over lanes,
-    /// so that the compiler keeps it in vector registers.
-    #[inline(always)]
-    pub fn distance_squared_row(&self, x: &[f32; 8], y: f32, z: f32) -> [f32; 8] {
-        let mut nearest = [f32::INFINITY; 8];
-        let mut side = [f32::NEG_INFINITY; 8];
-        for k in 0..3 {
-            let v = self.v[k];
-            let e = self.v[(k + 1) % 3] - v;
-            let m = e.cross(self.n);
-            let (dy, dz) = (y - v.y, z - v.z);
-            let along = e.y * dy + e.z * dz;
-            let across = m.y * dy + m.z * dz;
-            let inverse = self.inverse[k];
-            for i in 0..8 {
-                let dx = x[i] - v.x;
-                let t = ((e.x * dx + along) * inverse).clamp(0.0, 1.0);
-                let (rx, ry, rz) = (dx - e.x * t, dy - e.y * t, dz - e.z * t);
-                let d = rx * rx + ry * ry + rz * rz;
-                nearest[i] = if d < nearest[i] { d } else { nearest[i] };
-                let s = m.x * dx + across;
-                side[i] = if s > side[i] { s } else { side[i] };
-            }
-        }
-        let limit = if self.thin() { f32::NEG_INFINITY } else { 0.0 };
-        let level = self.n.y * (y - self.v[0].y) + self.n.z * (z - self.v[0].z);
-        for i in 0..8 {
-            let height = self.n.x * (x[i] - self.v[0].x) + level;
-            let plane = height * height;
-            nearest[i] = if side[i] <= limit { plane } else { nearest[i] };
-        }
-        nearest
     }
 
     /// Half the solid angle seen from `p` as the angle of a complex number, its real part first; positive

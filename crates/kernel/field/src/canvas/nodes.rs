@@ -126,35 +126,15 @@ pub(super) fn join_inner(layers: &mut Layers, fine: &[f32; NODES], stroke: &Inke
     }
 }
 
-/// Makes a loop over the nodes twice, once for wider registers: the same bits either way.
-macro_rules! wide {
-    ($name:ident, $wide:ident, $body:ident, ($($arg:ident: $type:ty),*)) => {
-        pub(super) fn $name($($arg: $type),*) {
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has AVX2, as just asked.
-                return unsafe { $wide($($arg),*) };
-            }
-            $body($($arg),*);
-        }
-
-        #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx2")]
-        fn $wide($($arg: $type),*) {
-            $body($($arg),*);
-        }
-    };
-}
-
-wide!(nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
-wide!(profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
-wide!(join, join_avx2, join_any, (layers: &mut Layers, fine: f32));
-wide!(level, level_avx2, level_any, (layers: &Layers, out: &mut [f32; NODES]));
-wide!(away, away_avx2, away_any, (bounds: &Aabb, rim: f32, p: &Points, least: &mut [f32; NODES]));
-wide!(beside, beside_avx2, beside_any, (weight: f32, inverse: f32, phi: &[f32; NODES], out: &mut [f32; NODES]));
-wide!(raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
-wide!(polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
-wide!(line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
+wide!(pub(super) nearest, nearest_avx2, nearest_any, (s: &Segment, p: &Points, out: &mut [f32; NODES]));
+wide!(pub(super) profile, profile_avx2, profile_any, (family: &Family, weight: f32, out: &mut [f32; NODES]));
+wide!(pub(super) join, join_avx2, join_any, (layers: &mut Layers, fine: f32));
+wide!(pub(super) level, level_avx2, level_any, (layers: &Layers, out: &mut [f32; NODES]));
+wide!(pub(super) away, away_avx2, away_any, (bounds: &Aabb, rim: f32, p: &Points, least: &mut [f32; NODES]));
+wide!(pub(super) beside, beside_avx2, beside_any, (weight: f32, inverse: f32, phi: &[f32; NODES], out: &mut [f32; NODES]));
+wide!(pub(super) raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
+wide!(pub(super) polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
+wide!(pub(super) line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
 
 #[inline(always)]
 fn nearest_any(s: &Segment, p: &Points, out: &mut [f32; NODES]) {

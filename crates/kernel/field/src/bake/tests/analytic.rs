@@ -27,21 +27,6 @@ fn fast_winding_is_near_the_exact_sum() {
 }
 
 #[test]
-fn rows_agree_with_points() {
-    let sliver = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-6, 0.0)]);
-    for t in triangles(&ball(0.2, 16, 8)).into_iter().chain([sliver]) {
-        let x: [f32; 8] = std::array::from_fn(|i| i as f32 * 0.06 - 0.21);
-        for (y, z) in [(0.01, 0.1), (0.2, -0.07), (-0.1, 0.0)] {
-            let row = t.distance_squared_row(&x, y, z);
-            for i in 0..8 {
-                let p = t.distance_squared(Vec3::new(x[i], y, z));
-                assert!((row[i] - p).abs() < 1e-7);
-            }
-        }
-    }
-}
-
-#[test]
 fn nodes_near_a_ball_are_exact() {
     let mesh = ball(0.2, 64, 32);
     let v = baked(&mesh);
@@ -101,4 +86,58 @@ fn any_number_of_threads_gives_the_same() {
         pool.install(|| baked(&mesh).to_bytes())
     });
     assert!(one == three);
+}
+
+/// Rays along the sides and through the corners of a mesh are those where rounding might count wrongly.
+#[test]
+fn a_box_and_a_star_on_the_nodes_have_no_wrong_sign() {
+    let step = 1.0 / 128.0;
+    let at = |i: u32| {
+        let k = glam::UVec3::new(i & 1, i >> 1 & 1, i >> 2).as_vec3();
+        (k * 2.0 - 1.0) * 16.0 * step
+    };
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let cube = midair_mesh::TriMesh {
+        positions: (0..8).map(at).collect(),
+        normals: Vec::new(),
+        triangles: sides
+            .iter()
+            .flat_map(|s| [[s[0], s[1], s[2]], [s[0], s[2], s[3]]])
+            .collect(),
+    };
+    let corners = [Vec3::X, Vec3::Y, Vec3::Z].map(|v| [v * 24.0 * step, v * -24.0 * step]);
+    let star = midair_mesh::TriMesh {
+        positions: corners.concat(),
+        normals: Vec::new(),
+        triangles: (0..8)
+            .map(|i| {
+                let t = [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)];
+                if (i & 1) ^ (i >> 1 & 1) ^ (i >> 2) == 0 {
+                    t
+                } else {
+                    [t[0], t[2], t[1]]
+                }
+            })
+            .collect(),
+    };
+    let options = BakeOptions {
+        step,
+        padding: 8.0 * step,
+    };
+    let volume = |mesh| bake(mesh, &options, &Progress::new()).unwrap();
+    for (p, s) in nodes(&volume(&cube)) {
+        let d = p.abs().max_element() - 16.0 * step;
+        assert!(d.abs() < 1e-6 || (s < 0.0) == (d < 0.0), "{p}: {s}");
+    }
+    for (p, s) in nodes(&volume(&star)) {
+        let d = p.abs().element_sum() - 24.0 * step;
+        assert!(d.abs() < 1e-6 || (s < 0.0) == (d < 0.0), "{p}: {s}");
+    }
 }

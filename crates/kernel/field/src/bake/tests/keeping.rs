@@ -21,7 +21,7 @@ fn a_forged_file_is_refused() {
     for plain in [vec![0xff; 200], vec![0; 200], vec![1; 4000], Vec::new()] {
         let mut rest = (plain.len() as u64).to_le_bytes().to_vec();
         rest.extend(lz4_flex::block::compress(&plain));
-        let mut bytes = b"mdrvol\0\x02".to_vec();
+        let mut bytes = b"mdrvol\0\x03".to_vec();
         bytes.extend(blake3::hash(&rest).as_bytes());
         bytes.extend(rest);
         assert!(Volume::from_bytes(&bytes).is_none());
