@@ -4,7 +4,10 @@ use std::time::Instant;
 
 use glam::{Quat, Vec3, Vec4};
 use midair_field::bake::{BakeOptions, LONGEST_SIDE, Progress, Volume, bake};
-use midair_field::{Canvas, MeshSource, Node, Placement, Recipe, Skeleton, Stroke, local_step};
+use midair_field::{
+    Canvas, MeshSource, Node, Placement, Program, Recipe, Skeleton, Stroke, local_step,
+};
+use midair_gpu::measure::Work;
 use midair_mesh::{Aabb, MeshHash, TriMesh};
 use midair_solid::Solid;
 use serde_json::json;
@@ -228,18 +231,75 @@ fn way(n: usize) -> Stroke {
     Stroke::new(Skeleton::Points(points.into()), 0.012)
 }
 
+/// A painting before a stroke and after it, and the mesh of that.
+struct Scene {
+    before: Recipe,
+    after: Recipe,
+    meshes: One,
+}
+
+/// The edits by the card: what is baked and voxelised there has workloads of its own.
+pub(crate) fn on_card() -> impl Iterator<Item = Work> {
+    let edits = Subject::all()
+        .into_iter()
+        .filter(|s| !matches!(s, Subject::Raw(..) | Subject::RawTorus(_)));
+    edits.map(|subject| {
+        Work::new(format!("gpu/{}", subject.name()), move || {
+            let step = subject.step();
+            let scene = scene(subject, step, &mut Details::new()).map_err(|e| e.to_string())?;
+            let compile = |recipe: &Recipe| {
+                let at = Placement::IDENTITY;
+                Program::compile(recipe, &at, step, &scene.meshes).map_err(|e| e.to_string())
+            };
+            Ok((Some(compile(&scene.before)?), compile(&scene.after)?))
+        })
+    })
+}
+
 pub(crate) fn run(subject: Subject, budget: &Budget) -> Result<(Times, Details), BenchError> {
     let step = subject.step();
     let go = AtomicBool::new(false);
     let at = Placement::IDENTITY;
     let mut details = Details::new();
-    let mut meshes = One(None);
-    let (before, after) = match subject {
+    match subject {
         Subject::Raw(shape, _) => return raw(&shape.mesh()?, BRUSH, step, budget),
         Subject::RawTorus(_) => {
             // As an import scales it; 1.7 m of 2/128 m steps are 0.85 m of 1/128 m.
             let torus = crate::bake::torus(160, 80, 0.6, 0.25);
             return raw(&torus.normalised(LONGEST_SIDE).0, 0.85, step, budget);
+        }
+        _ => {}
+    }
+    let Scene {
+        before,
+        after,
+        meshes,
+    } = scene(subject, step, &mut details)?;
+    let base = Solid::make(&before, &at, step, &meshes, &go)?;
+    let times = repeat(budget, || {
+        let started = Instant::now();
+        let solid = base.remake(&after, &at, step, &meshes, &go)?;
+        let total = started.elapsed();
+        Ok::<_, BenchError>(Run {
+            total,
+            parts: [("fuse_ms", solid.fuse), ("extract_ms", solid.extract)],
+        })
+    })?;
+    let solid = base.remake(&after, &at, step, &meshes, &go)?;
+    details.insert("triangles".into(), json!(solid.surface().triangles()));
+    details.insert("bricks".into(), json!(solid.grid().bricks().count()));
+    let bytes = solid.surface().bytes() + solid.grid().bricks().count() * 2_100;
+    details.insert("bytes".into(), json!(bytes));
+    Ok((times, details))
+}
+
+fn scene(subject: Subject, step: f32, details: &mut Details) -> Result<Scene, BenchError> {
+    let mut meshes = One(None);
+    let (before, after) = match subject {
+        // Nothing is there before, and nothing is edited.
+        Subject::Raw(..) | Subject::RawTorus(_) => {
+            let nothing = || Recipe::new(Node::Canvas(Canvas::default()));
+            (nothing(), nothing())
         }
         Subject::Edit(shape, _) => {
             let mesh = shape.mesh()?;
@@ -284,22 +344,11 @@ pub(crate) fn run(subject: Subject, budget: &Budget) -> Result<(Times, Details),
             (before, with(painting(), bite))
         }
     };
-    let base = Solid::make(&before, &at, step, &meshes, &go)?;
-    let times = repeat(budget, || {
-        let started = Instant::now();
-        let solid = base.remake(&after, &at, step, &meshes, &go)?;
-        let total = started.elapsed();
-        Ok::<_, BenchError>(Run {
-            total,
-            parts: [("fuse_ms", solid.fuse), ("extract_ms", solid.extract)],
-        })
-    })?;
-    let solid = base.remake(&after, &at, step, &meshes, &go)?;
-    details.insert("triangles".into(), json!(solid.surface().triangles()));
-    details.insert("bricks".into(), json!(solid.grid().bricks().count()));
-    let bytes = solid.surface().bytes() + solid.grid().bricks().count() * 2_100;
-    details.insert("bytes".into(), json!(bytes));
-    Ok((times, details))
+    Ok(Scene {
+        before,
+        after,
+        meshes,
+    })
 }
 
 /// From triangles to a closed smooth surface, nothing kept from before.

@@ -116,12 +116,15 @@ impl Workload {
 }
 
 /// The steps of EasyVRModeling Table 1, metres, as names spell them.
-const STEPS: [(&str, f32); 4] = [
+pub(crate) const STEPS: [(&str, f32); 4] = [
     ("0.012", 0.012),
     ("0.010", 0.010),
     ("0.008", 0.008),
     ("0.006", 0.006),
 ];
+
+/// How many operands a heap has.
+pub(crate) const MANY: [usize; 2] = [12, 30];
 
 /// Every workload there is.
 pub fn workloads() -> Vec<Workload> {
@@ -135,7 +138,7 @@ pub fn workloads() -> Vec<Workload> {
             });
         }
     }
-    for count in [12, 30] {
+    for count in MANY {
         for (spelt, step) in STEPS {
             let name = format!("csg/many-{count}/{spelt}");
             all.push(Workload::new(name, Work::Many(count, step)));

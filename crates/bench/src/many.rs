@@ -1,5 +1,6 @@
 use glam::{Quat, Vec3};
-use midair_field::{Node, Op, Operand, Placement, Recipe};
+use midair_field::{Node, Op, Operand, Placement, Program, Recipe};
+use midair_gpu::measure::Work;
 
 use crate::catalogue::BenchError;
 
@@ -25,4 +26,13 @@ pub(crate) fn recipe(count: usize) -> Result<Recipe, BenchError> {
         }
     });
     Ok(Recipe::new(Node::Solid(operands.collect())))
+}
+
+/// The same by the card, at a step.
+pub(crate) fn on_card(count: usize, step: f32, name: String) -> Work {
+    Work::new(name, move || {
+        let recipe = recipe(count).map_err(|e| e.to_string())?;
+        let made = Program::compile(&recipe, &Placement::IDENTITY, step, &());
+        Ok((None, made.map_err(|e| e.to_string())?))
+    })
 }

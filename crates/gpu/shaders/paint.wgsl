@@ -1,16 +1,26 @@
 // A painting: skeletons that melt into one convolution surface (3DBrushVR §4.1 Eq. 2–3), as
-// crates/kernel/field/src/canvas has them. On a tape its chunks that are felt follow it, by stroke.
+// crates/kernel/field/src/canvas has them. On a tape its chunks that are felt follow it, by stroke. A painting that is
+// a stroke itself stands there with all of its own, between two that begin and end it.
 
 const PAINTING: u32 = 12u;
 const INK: u32 = 5u;
-const STROKE: u32 = 36u;
+const STROKE: u32 = 40u;
+// Kinds of strokes.
+const POINTS: u32 = 0u;
+const LINE: u32 = 1u;
+const POLYGON: u32 = 2u;
+const SOLID: u32 = 3u;
+const BEGIN: u32 = 4u;
+const END: u32 = 5u;
+// Paintings within paintings.
+const NESTED: u32 = 3u;
+// Values on the stack of a brush's tape.
+const INNER: u32 = 18u;
 const THRESHOLD: f32 = 0.5;
 // From this exponent on strokes are united as they are.
 const HARD: f32 = 16.0;
 // Steps within which the distance to what is felt nowhere is told apart.
 const FAR: f32 = 3.0;
-// Chunks in one block beyond which bounds are not worth their time.
-const MANY: u32 = 200u;
 // Up to this a potential of a polygon is rounding.
 const NOTHING: f32 = 4.0e-6;
 const UNKNOWN: f32 = 1.0e30;
@@ -57,7 +67,7 @@ fn turn(y: f32, x: f32) -> f32 {
     return select(r, -r, y < 0.0);
 }
 
-// `c` is where a painting begins: reach, 1/reach², weights of a point, a line, a polygon.
+// `c` is where a family begins: reach, 1/reach², weights of a point, a line, a polygon; then the blend.
 fn at_point(c: u32, u2: f32) -> f32 {
     let a = max(1.0 - u2 * number(c + 1u), 0.0);
     return number(c + 2u) * a * a;
@@ -129,7 +139,7 @@ fn at_polygon(c: u32, s: u32, p: vec3<f32>) -> f32 {
         sum += e * (edge_part(high, c0, c2) - edge_part(low, c0, c2));
     }
     // What rounding leaves of the angles where no part is felt is nothing.
-    return max(number(c + 4u) * (sum + a * a * a * (1.0 / 6.0) * angle) - NOTHING, 0.0);
+    return max(number(family_at(c, s) + 4u) * (sum + a * a * a * (1.0 / 6.0) * angle) - NOTHING, 0.0);
 }
 
 // The squared distance to a segment in its own radii.
@@ -178,20 +188,91 @@ fn erases(s: u32) -> bool {
     return number(s + 2u) > 0.5;
 }
 
-// φ of a painting at a place of its canvas, from its chunks on `tape[from..to]`.
-fn painting_at(l: u32, begin: u32, to: u32, p: vec3<f32>) -> f32 {
+// The stroke of a number, of the painting that begins at `c`.
+fn stroke_at(c: u32, index: u32) -> u32 {
+    return c + program[c + 7u] + STROKE * index;
+}
+
+// Its family and blend; for one that ends a painting, of what that is a stroke of.
+fn family_at(c: u32, s: u32) -> u32 {
+    return c + program[s + 36u];
+}
+
+// Whether a stroke and the one after it are one.
+fn are_twins(c: u32, s: u32, next: u32) -> bool {
+    return next != NONE && program[s + 35u] != 0u && program[s + 35u] == program[stroke_at(c, next) + 35u];
+}
+
+// The kernel's integral over a half-space whose surface is `x` supports away.
+fn half_space(far: f32) -> f32 {
+    let x = clamp(far, -1.0, 1.0);
+    let x2 = x * x;
+    let f = 0.5 - 35.0 / 32.0 * x * (1.0 - x2 * (1.0 - x2 * (0.6 - x2 / 7.0)));
+    return select(0.0, clamp(f, 0.0, 1.0), x < 1.0);
+}
+
+var<private> inner: array<f32, INNER>;
+
+// φ of the solid that a stroke is made of, at a place of the world. Its tape lies with the painting: no solid has a
+// painting in it here.
+fn solid_at(c: u32, s: u32, world: vec3<f32>) -> f32 {
+    let tape_at = c + program[s + 19u];
+    var depth = 0u;
+    var top = HUGE;
+    for (var i = 0u; i < program[s + 20u]; i++) {
+        let instr = program[tape_at + i];
+        let op = instr >> 29u;
+        if op == 0u {
+            inner[min(depth, INNER - 1u)] = top;
+            depth++;
+            top = leaf_at(instr & 0x1fffffffu, world);
+        } else if op == 1u {
+            top = -top;
+        } else {
+            depth--;
+            let a = inner[min(depth, INNER - 1u)];
+            switch op {
+                case 2u: { top = min(a, top); }
+                case 3u: { top = max(a, top); }
+                default: { top = max(a, -top); }
+            }
+        }
+    }
+    return top;
+}
+
+// What a painting comes to at a place, stroke by stroke.
+struct Sum {
+    // Its own p-th power while strokes are painted.
+    total: f32,
+    raised: bool,
+    // Σ F of what was painted, and Σ F/scale.
+    felt: f32,
+    fine: f32,
+    // The most that the twins before are felt.
+    twins: f32,
+}
+
+var<private> sums: array<Sum, NESTED>;
+
+fn lowered(now: Sum, blend: f32) -> Sum {
+    var s = now;
+    if s.raised {
+        s.total = power(s.total, 1.0 / blend);
+        s.raised = false;
+    }
+    return s;
+}
+
+// φ of a painting at a place of its canvas and of the world, from its chunks on `tape[from..to]`.
+fn painting_at(l: u32, begin: u32, to: u32, p: vec3<f32>, world: vec3<f32>) -> f32 {
     let c = g.shapes + program[l + 1u];
-    let blend = number(c + 5u);
-    let widest = number(c) * number(c);
-    var total = 0.0;
-    var felt = 0.0;
-    var fine = 0.0;
-    // `total` is its own p-th power while strokes are painted.
-    var raised = false;
+    var now: Sum;
+    var depth = 0u;
     var least = (FAR + 1.0) * g.step / number(l + 2u);
     var current = NONE;
     var one = 0.0;
-    var u2 = widest;
+    var u2 = UNKNOWN;
     for (var i = begin; i <= to; i++) {
         var chunk = 0u;
         var index = NONE;
@@ -200,40 +281,57 @@ fn painting_at(l: u32, begin: u32, to: u32, p: vec3<f32>) -> f32 {
             index = program[chunk + 6u];
         }
         if index != current && current != NONE {
-            let s = c + program[c + 7u] + STROKE * current;
-            if program[s] == 0u {
-                one = at_point(c, u2);
-            }
-            one *= number(s + 1u);
-            if one > 0.0 && erases(s) {
-                if raised {
-                    total = power(total, 1.0 / blend);
-                    raised = false;
+            let s = stroke_at(c, current);
+            let kind = program[s];
+            if kind == BEGIN {
+                sums[min(depth, NESTED - 1u)] = now;
+                depth++;
+                now = Sum();
+            } else {
+                let family = family_at(c, s);
+                let blend = number(family + 5u);
+                var scale = 1.0 / number(s + 3u);
+                if kind == POINTS {
+                    one = at_point(family, u2);
+                } else if kind == END {
+                    let own = lowered(now, number(c + program[s + 38u] + 5u));
+                    depth--;
+                    now = sums[min(depth, NESTED - 1u)];
+                    one = own.total;
+                    scale *= select(0.0, own.fine / own.felt, own.felt > 0.0);
                 }
-                total = erased(total, one);
-            } else if one > 0.0 {
-                felt += one;
-                fine += one / number(s + 3u);
-                if blend >= HARD {
-                    total = max(total, one);
-                } else if blend == 1.0 {
-                    total += one;
-                } else {
-                    if !raised {
-                        total = power(total, blend);
-                        raised = true;
+                one *= number(s + 1u);
+                if one > 0.0 && !erases(s) {
+                    now.felt += one;
+                    now.fine += one * scale;
+                }
+                one = max(one, now.twins);
+                now.twins = 0.0;
+                if are_twins(c, s, index) {
+                    now.twins = one;
+                } else if one > 0.0 && erases(s) {
+                    now = lowered(now, blend);
+                    now.total = erased(now.total, one);
+                } else if one > 0.0 && blend >= HARD {
+                    now.total = max(now.total, one);
+                } else if one > 0.0 && blend == 1.0 {
+                    now.total += one;
+                } else if one > 0.0 {
+                    if !now.raised {
+                        now.total = power(now.total, blend);
+                        now.raised = true;
                     }
-                    total += power(one, blend);
+                    now.total += power(one, blend);
                 }
             }
             one = 0.0;
-            u2 = widest;
+            u2 = UNKNOWN;
         }
         current = index;
         if i == to {
             break;
         }
-        let s = c + program[c + 7u] + STROKE * index;
+        let s = stroke_at(c, index);
         let gap = max(max(triple(chunk) - p, p - triple(chunk + 3u)), vec3(0.0));
         if all(gap == vec3(0.0)) {
             let q = in_stroke(s, p);
@@ -246,187 +344,20 @@ fn painting_at(l: u32, begin: u32, to: u32, p: vec3<f32>) -> f32 {
                 }
                 case 1u: {
                     let at = line_axis(s, q);
-                    one = at_line(c, at.x, at.y, at.y + number(s + 24u) * number(s + 25u));
+                    one = at_line(family_at(c, s), at.x, at.y, at.y + number(s + 24u) * number(s + 25u));
                 }
-                default: { one = at_polygon(c, s, q); }
+                case 2u: { one = at_polygon(c, s, q); }
+                case 3u: { one = half_space(solid_at(c, s, world) / number(s + 18u)); }
+                default: {}
             }
         }
-        if !erases(s) {
+        if program[s + 37u] == 1u {
             least = min(least, max(length(gap), THRESHOLD * number(s + 3u)));
         }
     }
-    if fine <= 0.0 {
+    if now.fine <= 0.0 {
         return least;
     }
-    if raised {
-        total = power(total, 1.0 / blend);
-    }
-    return (THRESHOLD - total) * felt / fine;
-}
-
-// Bounds of F in a block, of the scales of what was painted there, and of |∇F|.
-struct Felt {
-    low: f32,
-    high: f32,
-    finest: f32,
-    widest: f32,
-    slope: f32,
-    known: bool,
-}
-
-fn touches(chunk: u32, low: vec3<f32>, high: vec3<f32>) -> bool {
-    return all(triple(chunk) <= high) && all(low <= triple(chunk + 3u));
-}
-
-fn painting_felt(l: u32, begin: u32, to: u32, centre: vec3<f32>, size: vec3<f32>, radius: f32) -> Felt {
-    let c = g.shapes + program[l + 1u];
-    let blend = number(c + 5u);
-    var f: Felt;
-    f.finest = UNKNOWN;
-    f.known = true;
-    var current = NONE;
-    var near = UNKNOWN;
-    var far = UNKNOWN;
-    var count = 0u;
-    for (var i = begin; i <= to; i++) {
-        var chunk = 0u;
-        var index = NONE;
-        if i < to {
-            chunk = c + program[c + 8u] + 9u * (tape[i] & 0x1fffffffu);
-            if !touches(chunk, centre - size, centre + size) {
-                continue;
-            }
-            count++;
-            if count > MANY {
-                f.known = false;
-                return f;
-            }
-            index = program[chunk + 6u];
-        }
-        if index != current && current != NONE {
-            let s = c + program[c + 7u] + STROKE * current;
-            let weight = number(s + 1u);
-            var low = 0.0;
-            var high = 0.0;
-            let p = in_stroke(s, centre);
-            let slope = number(s + 4u) / weight * radius;
-            var r = radius;
-            if program[s + 5u] == 1u {
-                let m = dot(triple(s + 6u), triple(s + 6u)) + dot(triple(s + 9u), triple(s + 9u))
-                    + dot(triple(s + 12u), triple(s + 12u));
-                r *= sqrt(m);
-            }
-            switch program[s] {
-                case 0u: {
-                    near = max(near, 0.0);
-                    low = at_point(c, far * far);
-                    high = at_point(c, near * near);
-                }
-                case 1u: {
-                    let at = line_axis(s, p);
-                    let long = number(s + 24u) * number(s + 25u);
-                    let here = at_line(c, at.x, at.y, at.y + long);
-                    let t = at.y + clamp(-at.y, 0.0, long);
-                    let d = sqrt(at.x + t * t) - r * number(s + 25u);
-                    low = here - slope;
-                    high = min(here + slope, at_axis(c, max(d, 0.0)));
-                }
-                default: {
-                    let here = at_polygon(c, s, p);
-                    let h = abs(in_plane(s, p).z) - r * number(s + 30u);
-                    low = here - slope;
-                    high = min(here + slope, at_plane(c, max(h, 0.0)));
-                }
-            }
-            // Rounding, here and in the closed forms.
-            low = weight * max(low - 4.0e-5, 0.0);
-            high = weight * max(high + 4.0e-5, 0.0);
-            f.slope += number(s + 4u);
-            if erases(s) {
-                let least = erased(f.low, high);
-                f.high = erased(f.high, low);
-                f.low = least;
-            } else {
-                f.low = blended(f.low, low, blend);
-                f.high = blended(f.high, high, blend);
-                f.finest = min(f.finest, number(s + 3u));
-                f.widest = max(f.widest, number(s + 3u));
-            }
-            near = UNKNOWN;
-            far = UNKNOWN;
-        }
-        current = index;
-        if i == to {
-            break;
-        }
-        let s = c + program[c + 7u] + STROKE * index;
-        if program[s] == 0u {
-            let p = in_stroke(s, centre);
-            var r = radius;
-            if program[s + 5u] == 1u {
-                let m = dot(triple(s + 6u), triple(s + 6u)) + dot(triple(s + 9u), triple(s + 9u))
-                    + dot(triple(s + 12u), triple(s + 12u));
-                r *= sqrt(m);
-            }
-            let segments = c + program[c + 9u];
-            for (var k = program[chunk + 7u]; k < program[chunk + 8u]; k++) {
-                let j = segments + 8u * k;
-                let u = sqrt(at_segment(j, p));
-                let wide = r / min(number(j + 6u), number(j + 6u) + number(j + 7u));
-                near = min(near, u - wide);
-                far = min(far, min(u + wide, 1.0e15));
-            }
-        }
-    }
-    f.low -= 1.0e-4 * abs(f.low);
-    f.high += 1.0e-4 * abs(f.high);
-    return f;
-}
-
-// Bounds of φ of a painting no further than `around` from the cube of half side `half` about `centre`.
-fn painting_bounds(leaf: u32, begin: u32, to: u32, centre: vec3<f32>, half: f32, around: f32) -> vec2<f32> {
-    let l = LEAF * leaf;
-    let scale = number(l + 2u);
-    let size = triple(l + 16u) * half + triple(l + 19u) * around;
-    let f = painting_felt(l, begin, to, to_local(l, centre), size, half * number(l + 3u) + around / scale);
-    if !f.known {
-        return vec2(-UNKNOWN, UNKNOWN);
-    }
-    let c = g.shapes + program[l + 1u];
-    let none = min(number(c + 6u) * THRESHOLD, (FAR + 1.0) * g.step / scale);
-    if f.widest <= 0.0 || f.high <= 0.0 {
-        return vec2(scale * none, UNKNOWN);
-    }
-    let d = THRESHOLD - f.high;
-    let low = min(d * f.finest, d * f.widest);
-    if f.low > 0.0 {
-        let e = THRESHOLD - f.low;
-        return scale * vec2(low, max(e * f.finest, e * f.widest));
-    }
-    return vec2(scale * min(low, none), UNKNOWN);
-}
-
-// The greatest |∇φ| of a painting there; HUGE where it is not known.
-fn painting_slope(leaf: u32, begin: u32, to: u32, centre: vec3<f32>, half: f32, around: f32) -> f32 {
-    let l = LEAF * leaf;
-    let size = triple(l + 16u) * half + triple(l + 19u) * around;
-    let r = half * number(l + 3u) + around / number(l + 2u);
-    let f = painting_felt(l, begin, to, to_local(l, centre), size, r);
-    return select(HUGE, max(f.slope * f.widest, 1.0), f.known);
-}
-
-// Hands the chunks down that can be felt about a cube; how many words were written.
-fn hand_down(leaf: u32, begin: u32, to: u32, centre: vec3<f32>, half: f32, around: f32, out: u32) -> u32 {
-    let l = LEAF * leaf;
-    let p = to_local(l, centre);
-    let size = triple(l + 16u) * half + triple(l + 19u) * around + FAR * g.step / number(l + 2u);
-    let chunks = g.shapes + program[l + 1u] + program[g.shapes + program[l + 1u] + 8u];
-    var n = 0u;
-    for (var i = begin; i < to; i++) {
-        if touches(chunks + 9u * (tape[i] & 0x1fffffffu), p - size, p + size) {
-            tape[out + n] = tape[i];
-            n++;
-        }
-    }
-    return n;
+    now = lowered(now, number(c + 5u));
+    return (THRESHOLD - now.total) * now.felt / now.fine;
 }

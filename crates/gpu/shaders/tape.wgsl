@@ -34,7 +34,7 @@ fn evaluate(off: u32, len: u32, p: vec3<f32>) -> f32 {
             var v = 0.0;
             if is_painting(leaf) {
                 let to = inks(i, end);
-                v = number(LEAF * leaf + 2u) * painting_at(LEAF * leaf, i, to, to_local(LEAF * leaf, p));
+                v = number(LEAF * leaf + 2u) * painting_at(LEAF * leaf, i, to, to_local(LEAF * leaf, p), p);
                 i = to;
             } else {
                 v = leaf_at(leaf, p);

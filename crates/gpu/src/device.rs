@@ -1,3 +1,4 @@
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::error::GpuError;
@@ -46,6 +47,8 @@ pub struct Gpu {
     adapter: Adapter,
     pub(crate) limits: wgpu::Limits,
     pub(crate) budget: u64,
+    /// The largest buffer that there is said to be memory for.
+    pub(crate) left: AtomicU64,
     /// The device is somebody else's as well, who draws with it.
     shared: bool,
     /// Nanoseconds to a tick, where the device measures times.
@@ -160,6 +163,7 @@ impl Gpu {
             adapter,
             limits,
             budget: options.budget,
+            left: AtomicU64::new(u64::MAX),
             shared: true,
         })
     }
@@ -220,6 +224,7 @@ impl Gpu {
             adapter: described,
             limits,
             budget: options.budget,
+            left: AtomicU64::new(u64::MAX),
             shared: false,
             tick,
         })
@@ -239,6 +244,17 @@ impl Gpu {
     /// What it runs on.
     pub fn adapter(&self) -> &Adapter {
         &self.adapter
+    }
+
+    /// The most bytes of device memory for one solid.
+    pub fn budget(&self) -> u64 {
+        self.budget
+    }
+
+    /// From here on a buffer of more than so many bytes finds no memory left, as on a card that others have filled:
+    /// `None` for what there is. A test of what then happens.
+    pub fn starve(&self, most: Option<u64>) {
+        self.left.store(most.unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 
     /// Whether somebody else draws with the device.

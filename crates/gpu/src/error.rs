@@ -40,7 +40,7 @@ pub enum GpuError {
         reason: String,
     },
     /// The device has no memory left.
-    #[error("the graphics card has no {bytes} bytes left for {what}")]
+    #[error("the graphics card has no {} left for {what}", mib(*bytes))]
     OutOfMemory {
         /// What they were for.
         what: &'static str,
@@ -51,7 +51,11 @@ pub enum GpuError {
     #[error("the graphics card has no memory left for a pass")]
     Full,
     /// More memory than was granted to the solid, or than one buffer of the device may have.
-    #[error("the solid needs {needs} bytes for {what}, {budget} are granted; choose a larger step")]
+    #[error(
+        "the solid needs {} of the graphics card's memory for {what}, {} are granted; choose a larger step",
+        mib(*needs),
+        mib(*budget)
+    )]
     Budget {
         /// What they are for.
         what: &'static str,
@@ -72,6 +76,15 @@ pub enum GpuError {
     /// The device refused what it was told: a mistake of ours.
     #[error("the graphics card refused a pass: {0}")]
     Refused(String),
+}
+
+/// Bytes for people.
+pub(crate) fn mib(bytes: u64) -> String {
+    match bytes >> 20 {
+        0 => format!("{bytes} bytes"),
+        n if n % 1024 == 0 => format!("{} GiB", n / 1024),
+        n => format!("{n} MiB"),
+    }
 }
 
 impl GpuError {

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use glam::Vec3;
 use midair_field::bake::Volume;
 use midair_field::{
-    ConvexView, Form, LeafView, OutlineEdge, PaintingView, Program, SkeletonView, TapeStep,
+    Canvas, ConvexView, Form, LeafView, Node, OutlineEdge, Program, Recipe, TapeStep,
 };
 
 use crate::GpuError;
-use crate::layout::{DEEPEST, INK, LEAF, STROKE};
+use crate::layout::{DEEPEST, INK, INNER, LEAF};
+use crate::paint::{chunks, paint};
 
 /// Leaves, shapes, meshes and tape.
 pub(crate) struct Flat {
@@ -30,79 +31,157 @@ pub(crate) struct Flat {
 /// Words before a volume's table.
 const HEAD: usize = 8;
 
+/// Words that are being put together.
+pub(crate) struct Words {
+    leaves: Vec<[u32; LEAF]>,
+    pub shapes: Vec<u32>,
+    meshes: Vec<Arc<Volume>>,
+    /// Where each mesh begins, and where the next one would.
+    places: HashMap<*const Volume, u32>,
+    volumes: usize,
+    flattest: f32,
+    painted: bool,
+}
+
+impl Words {
+    fn leaf(&mut self, at: usize, leaf: &LeafView) -> Result<(), GpuError> {
+        self.flattest = self.flattest.min(leaf.flattest);
+        let mut row = [0u32; LEAF];
+        place(leaf, &mut row);
+        row[0] = kind(&leaf.form);
+        row[1] = match &leaf.form {
+            Form::Volume(volume) => *self.places.entry(Arc::as_ptr(volume)).or_insert_with(|| {
+                let at = self.volumes as u32;
+                self.volumes += words_of(volume);
+                self.meshes.push((*volume).clone());
+                at
+            }),
+            Form::Painting(view) => {
+                (self.painted, self.flattest) = (true, 0.0);
+                paint(view, self)?
+            }
+            form => {
+                let at = self.shapes.len() as u32;
+                shape(form, &mut row, &mut self.shapes);
+                at
+            }
+        };
+        self.leaves[at] = row;
+        Ok(())
+    }
+
+    /// The tape of a solid that a painting's stroke is made of; its parts become leaves like any other.
+    pub fn solid(&mut self, program: &Program) -> Result<Vec<u32>, GpuError> {
+        let first = self.leaves.len();
+        let parts: Vec<LeafView> = program.leaves().collect();
+        self.leaves.resize(first + parts.len(), [0; LEAF]);
+        for (i, leaf) in parts.iter().enumerate() {
+            if let Form::Painting(_) = leaf.form {
+                return Err(GpuError::Unsupported(PAINTED_BRUSH));
+            }
+            self.leaf(first + i, leaf)?;
+        }
+        let words = program.tape().map(|step| word(step, first as u32));
+        if deepest(program) > INNER {
+            return Err(GpuError::Unsupported(
+                "a painting with a deeply nested solid as brush",
+            ));
+        }
+        Ok(words.collect())
+    }
+}
+
+/// What no shader knows: these call nothing that calls them.
+const PAINTED_BRUSH: &str = "a painting with a solid as brush that has a painting in it";
+
+/// Whether the passes know what a recipe is made of: told from the recipe alone, before anything is compiled for them.
+pub fn can_make(recipe: &Recipe) -> bool {
+    !holds(recipe, &|canvas| !canvas.recipes().all(can_brush))
+}
+
+/// A painting as a brush keeps its strokes; in any other solid none may be.
+fn can_brush(brush: &Recipe) -> bool {
+    match brush.node() {
+        Node::Component { recipe, .. } => can_brush(recipe),
+        Node::Canvas(_) => can_make(brush),
+        _ => !holds(brush, &|_| true),
+    }
+}
+
+/// Whether a recipe has a painting in it of which something is true.
+fn holds(recipe: &Recipe, is: &dyn Fn(&Canvas) -> bool) -> bool {
+    match recipe.node() {
+        Node::Canvas(canvas) => is(canvas),
+        Node::Component { recipe, .. } | Node::Clones { recipe, .. } => holds(recipe, is),
+        Node::Solid(operands) => operands
+            .iter()
+            .any(|operand| !operand.muted && holds(&operand.recipe, is)),
+        Node::Primitive(_) | Node::Mesh { .. } | Node::Foreign { .. } | Node::Sweep(_) => false,
+    }
+}
+
+fn word(step: TapeStep, first: u32) -> u32 {
+    match step {
+        TapeStep::Load(leaf) => first + leaf,
+        TapeStep::Negate => 1 << 29,
+        TapeStep::Min => 2 << 29,
+        TapeStep::Max => 3 << 29,
+        TapeStep::MaxNegated => 4 << 29,
+    }
+}
+
+/// Values on the stack at most.
+fn deepest(program: &Program) -> usize {
+    let (mut depth, mut most) = (0usize, 0);
+    for step in program.tape() {
+        match step {
+            TapeStep::Load(_) => depth += 1,
+            TapeStep::Negate => {}
+            _ => depth = depth.saturating_sub(1),
+        }
+        most = most.max(depth);
+    }
+    most
+}
+
 impl Flat {
     pub fn new(program: &Program) -> Result<Self, GpuError> {
-        let mut tape = Vec::new();
-        let (mut depth, mut deepest) = (0usize, 0);
-        let forms: Vec<LeafView> = program.leaves().collect();
-        for step in program.tape() {
-            tape.push(match step {
-                TapeStep::Load(leaf) => {
-                    depth += 1;
-                    if let Form::Painting(Some(painting)) = &forms[leaf as usize].form {
-                        // Its chunks follow it, so that they are handed down as operands are.
-                        tape.push(leaf);
-                        tape.extend((0..painting.chunks.len() as u32).map(|c| INK << 29 | c));
-                        continue;
-                    }
-                    leaf
-                }
-                TapeStep::Negate => 1 << 29,
-                TapeStep::Min => 2 << 29,
-                TapeStep::Max => 3 << 29,
-                TapeStep::MaxNegated => 4 << 29,
-            });
-            if !matches!(step, TapeStep::Load(_) | TapeStep::Negate) {
-                depth = depth.saturating_sub(1);
-            }
-            deepest = deepest.max(depth);
-        }
-        if deepest > DEEPEST {
+        if deepest(program) > DEEPEST {
             return Err(GpuError::Unsupported("a solid nested more than 32 deep"));
         }
-        let (mut leaves, mut shapes) = (Vec::new(), Vec::new());
-        let mut places: HashMap<*const Volume, u32> = HashMap::new();
-        let (mut meshes, mut words, mut flattest) = (Vec::new(), 0usize, f32::INFINITY);
-        let mut painted = false;
-        for leaf in forms {
-            flattest = flattest.min(leaf.flattest);
-            let mut row = [0u32; LEAF];
-            place(&leaf, &mut row);
-            let data = match &leaf.form {
-                Form::Volume(volume) => *places.entry(Arc::as_ptr(volume)).or_insert_with(|| {
-                    let at = words as u32;
-                    words += words_of(volume);
-                    meshes.push((*volume).clone());
-                    at
-                }),
-                Form::Painting(None) => {
-                    return Err(GpuError::Unsupported("a painting with solids as brushes"));
-                }
-                Form::Painting(Some(view)) => {
-                    (painted, flattest) = (true, 0.0);
-                    let at = shapes.len() as u32;
-                    painting(view, &mut shapes);
-                    at
-                }
-                form => {
-                    let at = shapes.len() as u32;
-                    shape(form, &mut row, &mut shapes);
-                    at
-                }
-            };
-            row[1] = data;
-            row[0] = kind(&leaf.form);
-            leaves.extend(row);
+        let forms: Vec<LeafView> = program.leaves().collect();
+        let mut tape = Vec::new();
+        for step in program.tape() {
+            tape.push(word(step, 0));
+            if let TapeStep::Load(leaf) = step
+                && let Form::Painting(view) = &forms[leaf as usize].form
+            {
+                // Its chunks follow it, so that they are handed down as operands are.
+                tape.extend((0..chunks(view)).map(|c| INK << 29 | c));
+            }
         }
-        let shapes_at = leaves.len() as u32;
-        leaves.append(&mut shapes);
+        let mut words = Words {
+            leaves: vec![[0; LEAF]; forms.len()],
+            shapes: Vec::new(),
+            meshes: Vec::new(),
+            places: HashMap::new(),
+            volumes: 0,
+            flattest: f32::INFINITY,
+            painted: false,
+        };
+        for (i, leaf) in forms.iter().enumerate() {
+            words.leaf(i, leaf)?;
+        }
+        let mut program: Vec<u32> = words.leaves.into_flattened();
+        let shapes = program.len() as u32;
+        program.append(&mut words.shapes);
         Ok(Self {
-            program: leaves,
-            shapes: shapes_at,
+            program,
+            shapes,
             tape,
-            meshes,
-            flattest,
-            painted,
+            meshes: words.meshes,
+            flattest: words.flattest,
+            painted: words.painted,
         })
     }
 
@@ -226,54 +305,4 @@ fn convex(hull: &ConvexView, data: &mut Vec<u32>) {
     }
     data.extend(hull.edges.as_flattened().iter().map(|x| x.to_bits()));
     data.extend(hull.walls.iter().flatten().flatten().map(|x| x.to_bits()));
-}
-
-/// Family, blend, least scale, and where strokes, chunks and segments begin; then these, then what polygons have.
-fn painting(view: &PaintingView, data: &mut Vec<u32>) {
-    const HEAD: usize = 10;
-    let strokes = HEAD;
-    let chunks = strokes + STROKE * view.strokes.len();
-    let segments = chunks + 9 * view.chunks.len();
-    let mut more = segments + 8 * view.segments.len();
-    let mut areas: Vec<u32> = Vec::new();
-    data.extend(view.family.map(f32::to_bits));
-    data.extend([view.blend, view.least].map(f32::to_bits));
-    data.extend([strokes, chunks, segments].map(|n| n as u32));
-    for s in &view.strokes {
-        let mut row = [0u32; STROKE];
-        row[1..5].copy_from_slice(
-            &[s.weight, f32::from(u8::from(s.erase)), s.scale, s.slope].map(f32::to_bits),
-        );
-        row[5] = s.to_local.is_some().into();
-        let m = s.to_local.unwrap_or(glam::Affine3A::IDENTITY);
-        for (to, from) in row[6..18].iter_mut().zip(m.to_cols_array()) {
-            *to = from.to_bits();
-        }
-        match &s.skeleton {
-            SkeletonView::Points => {}
-            SkeletonView::Line(numbers) => {
-                row[0] = 1;
-                row[18..26].copy_from_slice(&numbers.map(f32::to_bits));
-            }
-            SkeletonView::Polygon(frame, corners, edges) => {
-                row[0] = 2;
-                row[18..31].copy_from_slice(&frame.map(f32::to_bits));
-                let (at, end) = (more, more + 2 * corners.len());
-                row[31..35]
-                    .copy_from_slice(&[corners.len(), at, edges.len(), end].map(|n| n as u32));
-                areas.extend(corners.iter().flat_map(|c| c.to_array()).map(f32::to_bits));
-                areas.extend(edges.as_flattened().iter().map(|x| x.to_bits()));
-                more = end + 5 * edges.len();
-            }
-        }
-        data.extend(row);
-    }
-    for c in &view.chunks {
-        let ends = [c.bounds.min, c.bounds.max];
-        data.extend(ends.iter().flat_map(Vec3::to_array).map(f32::to_bits));
-        data.push(c.stroke);
-        data.extend(c.segments);
-    }
-    data.extend(view.segments.as_flattened().iter().map(|x| x.to_bits()));
-    data.append(&mut areas);
 }

@@ -12,6 +12,7 @@ pub(crate) struct Source {
 const COMMON: &str = include_str!("../shaders/common.wgsl");
 const SHAPE: &str = include_str!("../shaders/shape.wgsl");
 const PAINT: &str = include_str!("../shaders/paint.wgsl");
+const FELT: &str = include_str!("../shaders/felt.wgsl");
 const TAPE: &str = include_str!("../shaders/tape.wgsl");
 const RANGES: &str = include_str!("../shaders/ranges.wgsl");
 
@@ -23,6 +24,7 @@ pub(crate) const SOURCES: [Source; 6] = [
             COMMON,
             SHAPE,
             PAINT,
+            FELT,
             TAPE,
             include_str!("../shaders/cull.wgsl"),
         ],
@@ -37,6 +39,7 @@ pub(crate) const SOURCES: [Source; 6] = [
             COMMON,
             SHAPE,
             PAINT,
+            FELT,
             TAPE,
             include_str!("../shaders/fuse.wgsl"),
         ],

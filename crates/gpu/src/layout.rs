@@ -59,12 +59,16 @@ pub(crate) struct Block {
 /// Words of a leaf in `program`.
 pub(crate) const LEAF: usize = 32;
 /// Words of a painting's stroke.
-pub(crate) const STROKE: usize = 36;
+pub(crate) const STROKE: usize = 40;
 /// The instruction that names a chunk of the painting that was loaded last.
 pub(crate) const INK: u32 = 5;
 /// Words of a brick's record.
 pub(crate) const STRIDE: usize = 104;
 pub(crate) const ALIVE: usize = 8;
+/// Paintings within a painting, one in the other, at most.
+pub(crate) const NESTED: usize = 3;
+/// Values on the stack of the tape of a painting's solid at most, less one for safety.
+pub(crate) const INNER: usize = 17;
 /// Values on the stack of a tape at most, less one for safety.
 pub(crate) const DEEPEST: usize = 33;
 /// No table, no slot.

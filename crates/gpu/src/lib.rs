@@ -25,7 +25,7 @@
 //! - `device`: adapters, limits, what is lost.
 //! - `kernels`: the passes by name, compiled from `shaders/`.
 //! - `layout`: structs and numbers that Rust and WGSL share.
-//! - `flatten`: a program as words for the device.
+//! - `flatten`: a program as words for the device; `paint`: a painting in it.
 //! - `memory`: buffers within a budget.
 //! - `solid`: making and updating; `passes`: what is run for it, in which order.
 //! - [`measure`]: workloads that are timed.
@@ -40,6 +40,7 @@ mod kernels;
 mod layout;
 pub mod measure;
 mod memory;
+mod paint;
 mod passes;
 mod read;
 mod solid;
@@ -49,6 +50,7 @@ mod wait;
 pub use device::{Adapter, Gpu, GpuOptions};
 pub use emit::{Emitted, INDEX_BYTES, Stretch, VERTEX_BYTES};
 pub use error::GpuError;
+pub use flatten::can_make;
 pub use solid::{GpuSolid, Memory, SolidOptions, Timing};
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use glam::{Quat, Vec3};
 use midair_field::bake::{BakeOptions, Progress, Volume, bake};
 use midair_field::{
-    FuseOptions, MeshSource, Node, Op, Operand, Placement, Primitive, Program, Recipe, changed_box,
-    fuse, refuse,
+    FuseOptions, MeshSource, Node, Op, Operand, Placement, Primitive, Program, Recipe, fuse,
+    refuse_from,
 };
 use midair_mesh::{Aabb, MeshHash, TriMesh};
 use midair_surface::Surface;
@@ -44,6 +44,20 @@ enum Kind {
     Brush(u32),
     /// The chair at so many nodes along its longest side.
     Growth(u32),
+    /// Somebody else's.
+    Own(Own),
+}
+
+/// Gives what was there before, where it is an edit, and what is to be made.
+type Make = dyn Fn() -> Result<(Option<Program>, Program), String> + Send + Sync;
+
+#[derive(Clone)]
+struct Own(Arc<Make>);
+
+impl std::fmt::Debug for Own {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Own")
+    }
 }
 
 /// What a workload took, medians in milliseconds.
@@ -221,6 +235,18 @@ pub(crate) fn dab(nodes: u32, within: u32) -> (Program, Program) {
 }
 
 impl Work {
+    /// Another workload: `make` gives, when its turn comes, what was there before, where it is an edit, and what is to be
+    /// made; or one line that says why it cannot.
+    pub fn new(
+        name: impl Into<String>,
+        make: impl Fn() -> Result<(Option<Program>, Program), String> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            kind: Kind::Own(Own(Arc::new(make))),
+        }
+    }
+
     fn made(&self) -> Result<Made, String> {
         let whole = |recipe: &Recipe, step| {
             let program = Program::compile(recipe, &Placement::IDENTITY, step, &());
@@ -229,22 +255,22 @@ impl Work {
                 program: program.map_err(|e| e.to_string())?,
             })
         };
-        match self.kind {
-            Kind::Task(name, step) => whole(&task(name)?, step),
-            Kind::Growth(n) => {
+        match &self.kind {
+            &Kind::Task(name, step) => whole(&task(name)?, step),
+            &Kind::Growth(n) => {
                 let chair = task("chair")?;
                 let side = chair.bounds().size().max_element();
                 whole(&chair, side / (n - 1) as f32)
             }
-            Kind::Full(n) => Ok(Made {
+            &Kind::Full(n) => Ok(Made {
                 before: None,
                 program: full(2.0 / (n - 1) as f32, None)?,
             }),
-            Kind::Baked(n) => Ok(Made {
+            &Kind::Baked(n) => Ok(Made {
                 before: None,
                 program: baked(2.0 / (n - 1) as f32)?,
             }),
-            Kind::Dab { nodes, within } => {
+            &Kind::Dab { nodes, within } => {
                 let step = 2.0 / (within - 1) as f32;
                 Ok(Made {
                     before: Some(full(step, None)?),
@@ -252,6 +278,10 @@ impl Work {
                 })
             }
             Kind::Brush(_) => Err("a brush is no recipe".to_owned()),
+            Kind::Own(Own(make)) => {
+                let (before, program) = make()?;
+                Ok(Made { before, program })
+            }
         }
     }
 
@@ -372,8 +402,7 @@ fn on_processor(before: Option<&Program>, program: &Program, runs: usize) -> Res
                 let mut grid = fuse(before, &options).map_err(said)?;
                 let mut surface = Surface::extract(&grid);
                 let started = Instant::now();
-                let dirty = changed_box(before, program);
-                let changed = refuse(&mut grid, program, &dirty, &options).map_err(said)?;
+                let changed = refuse_from(&mut grid, before, program, &options).map_err(said)?;
                 let go = AtomicBool::new(false);
                 surface
                     .update_unless(&grid, &changed, &go)

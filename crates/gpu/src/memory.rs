@@ -188,6 +188,9 @@ pub(crate) fn buffer(
     usage: wgpu::BufferUsages,
 ) -> Result<wgpu::Buffer, GpuError> {
     gpu.check()?;
+    if bytes > gpu.left.load(std::sync::atomic::Ordering::Relaxed) {
+        return Err(GpuError::OutOfMemory { what, bytes });
+    }
     let memory = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let valid = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -7,7 +7,7 @@ use midair_field::{Canvas, Node, Op, Primitive, Recipe, Skeleton, Stroke};
 
 use super::support::*;
 use crate::kernels::sources;
-use crate::{Gpu, GpuError, GpuOptions, GpuSolid};
+use crate::{Gpu, GpuError, GpuOptions, GpuSolid, can_make};
 
 fn software() -> GpuOptions {
     GpuOptions {
@@ -134,6 +134,36 @@ fn a_lost_device_is_an_error_and_no_panic() {
     ));
 }
 
+/// In the middle of whatever it is at.
+#[test]
+fn a_device_that_is_lost_while_it_works_keeps_nobody_waiting() {
+    if gpu().is_none() {
+        return;
+    }
+    for after in [0, 3, 10, 30, 100] {
+        let gpu = Arc::new(Gpu::open(&software()).unwrap());
+        let (tell, told) = std::sync::mpsc::channel();
+        let worker = gpu.clone();
+        std::thread::spawn(move || {
+            let made = || -> Result<(), GpuError> {
+                let mut solid = GpuSolid::make(&worker, &compile(&ball(0.3), 0.005))?;
+                for i in 0..1000 {
+                    let radius = 0.3 + 0.001 * (i % 10) as f32;
+                    solid.update(&compile(&ball(radius), 0.005))?;
+                    solid.mesh()?;
+                }
+                Ok(())
+            };
+            let _ = tell.send(made());
+        });
+        std::thread::sleep(std::time::Duration::from_millis(after));
+        gpu.lose();
+        let came = told.recv_timeout(std::time::Duration::from_secs(60));
+        let refused = came.expect("it waits for ever").unwrap_err();
+        assert!(matches!(refused, GpuError::Lost(_)), "{refused:?}");
+    }
+}
+
 #[test]
 fn what_the_device_does_not_know_is_said() {
     let Some(gpu) = gpu() else { return };
@@ -146,15 +176,30 @@ fn what_the_device_does_not_know_is_said() {
     }
     let refused = GpuSolid::make(&gpu, &compile(&deep, 0.01)).err().unwrap();
     assert!(matches!(refused, GpuError::Unsupported(_)), "{refused:?}");
-    // A solid as a brush.
-    let stroke = Stroke::new(Skeleton::Volume(ball(0.1)), 0.05);
-    let canvas = Canvas {
-        strokes: vec![stroke],
-        ..Canvas::default()
+    // A solid as a brush that was painted itself: told from the recipe already.
+    let canvas = |brush: Recipe| {
+        let strokes = vec![Stroke::new(Skeleton::Volume(brush), 0.05)];
+        let canvas = Canvas {
+            strokes,
+            ..Canvas::default()
+        };
+        Recipe::new(Node::Canvas(canvas))
     };
-    let painting = compile(&Recipe::new(Node::Canvas(canvas)), 0.01);
-    let refused = GpuSolid::make(&gpu, &painting).err().unwrap();
+    let painted = operand(Op::Union, Vec3::ZERO, canvas(ball(0.1)));
+    let painted = canvas(Recipe::new(Node::Solid(vec![painted])));
+    assert!(can_make(&canvas(ball(0.1))) && can_make(&canvas(canvas(ball(0.1)))));
+    assert!(!can_make(&painted) && !can_make(&canvas(painted.clone())));
+    let refused = GpuSolid::make(&gpu, &compile(&painted, 0.01))
+        .err()
+        .unwrap();
     assert!(refused.to_string().contains("painting"), "{refused}");
+    // Brushes within brushes.
+    let mut within = ball(0.1);
+    for _ in 0..6 {
+        within = canvas(within);
+    }
+    let refused = GpuSolid::make(&gpu, &compile(&within, 0.01)).err().unwrap();
+    assert!(matches!(refused, GpuError::Unsupported(_)), "{refused:?}");
     let far = operand(Op::Union, Vec3::X * 9.0e4, ball(0.1));
     let far = compile(&Recipe::new(Node::Solid(vec![far])), 0.01);
     assert_eq!(

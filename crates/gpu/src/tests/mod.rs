@@ -1,3 +1,4 @@
+mod canvases;
 mod emit;
 mod errors;
 mod growth;

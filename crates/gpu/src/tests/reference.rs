@@ -12,8 +12,9 @@ use midair_field::{
 use midair_mesh::{Aabb, MeshHash};
 use midair_surface::Surface;
 
+use super::canvases::{paintings, volume_brushes};
 use super::support::*;
-use crate::{GpuSolid, SolidOptions};
+use crate::{GpuSolid, SolidOptions, can_make};
 
 fn on_processor(program: &Program) -> Grid {
     fuse(program, &FuseOptions::default()).expect("fits")
@@ -42,79 +43,16 @@ fn suite() -> Vec<(String, Program)> {
         let cut = Recipe::new(Node::Solid(cut));
         all.push((format!("{name}, cut"), compile(&cut, 0.008)));
     }
+    for (name, canvas) in volume_brushes() {
+        let recipe = Recipe::new(Node::Canvas(canvas));
+        assert!(can_make(&recipe), "{name}");
+        let program = Program::compile(&recipe, &Placement::IDENTITY, 0.0125, &Torus);
+        all.push((name.into(), program.expect("sound")));
+    }
     for (name, recipe) in table_1() {
         all.push((name.into(), compile(&recipe, 0.01)));
     }
     all
-}
-
-/// Every skeleton alone and melted with others, erased, squeezed, and with every kind of blending.
-fn paintings() -> Vec<(&'static str, Canvas)> {
-    let led = |n: u32, radius: f32| {
-        let point = |i: u32| {
-            let t = i as f32 / n as f32;
-            let at = Vec3::new(0.2 * (5.0 * t).sin(), 0.3 * t - 0.15, 0.2 * (7.0 * t).cos());
-            at.extend(1.0 - 0.5 * t)
-        };
-        Stroke::new(Skeleton::Points((0..=n).map(point).collect()), radius)
-    };
-    let line = Stroke::new(
-        Skeleton::Line(Vec3::new(-0.2, 0.0, 0.1), Vec3::new(0.25, 0.1, 0.0)),
-        0.04,
-    );
-    let bay = [
-        (-0.2, -0.1),
-        (0.2, -0.15),
-        (0.05, 0.0),
-        (0.2, 0.15),
-        (-0.15, 0.1),
-    ];
-    let bay = bay.map(|(x, y)| Vec3::new(x, 0.3 * x, y));
-    let area = Stroke::new(Skeleton::Polygon(bay.into()), 0.05);
-    let point = Stroke::point(Vec3::new(0.1, 0.05, 0.02), 0.07);
-    // Felt over three steps and more: where less is felt than rounding, the scales of strokes are anybody's guess.
-    let wide = |s: &Stroke| Stroke {
-        radius: 0.075,
-        ..s.clone()
-    };
-    let with = |strokes: Vec<Stroke>, blend: f32| Canvas {
-        strokes,
-        blend,
-        ..Canvas::default()
-    };
-    let bite = Stroke {
-        erase: true,
-        weight: 1.3,
-        ..Stroke::point(Vec3::new(0.05, 0.1, 0.05), 0.06)
-    };
-    let squeezed = Stroke {
-        placement: Placement {
-            translation: Vec3::new(0.0, 0.1, 0.0),
-            rotation: Quat::from_rotation_z(0.4),
-            scale: Vec3::new(1.0, 0.8, 1.2),
-        },
-        ..area.clone()
-    };
-    let all = || {
-        vec![
-            led(60, 0.06),
-            wide(&line),
-            wide(&area),
-            bite.clone(),
-            wide(&point),
-            wide(&squeezed),
-        ]
-    };
-    vec![
-        ("a point", with(vec![point.clone()], 1.0)),
-        ("a led point", with(vec![led(100, 0.04)], 1.0)),
-        ("a line", with(vec![line.clone()], 1.0)),
-        ("an area", with(vec![area.clone()], 1.0)),
-        ("a squeezed area", with(vec![squeezed.clone()], 1.0)),
-        ("strokes that add up", with(all(), 1.0)),
-        ("strokes that melt", with(all(), 2.5)),
-        ("strokes that do not", with(all(), 20.0)),
-    ]
 }
 
 /// Meshes that were baked, turned, stretched and cut, beside an exact part.
@@ -162,15 +100,18 @@ impl MeshSource for Torus {
 #[test]
 fn fields_agree_with_the_processor() {
     let Some(gpu) = gpu() else { return };
+    let mut off = Vec::new();
     for (name, program) in suite() {
         let solid = GpuSolid::make(&gpu, &program).unwrap();
         let (most, signs, compared) =
             difference(&solid.grid().unwrap(), &on_processor(&program), 3.0, 1e-4);
         println!("{name}: {most:.2e} steps off at most over {compared} nodes");
         assert!(compared > 1000, "{name}");
-        assert!(most <= 1e-4, "{name}: {most} steps off");
-        assert_eq!(signs, 0, "{name}: signs");
+        if most > 1e-4 || signs > 0 {
+            off.push((name, most, signs));
+        }
     }
+    assert!(off.is_empty(), "steps off, and signs: {off:?}");
 }
 
 #[test]

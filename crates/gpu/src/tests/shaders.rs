@@ -103,6 +103,8 @@ fn constants_agree() {
         ("LEAF", LEAF as u32),
         ("STROKE", STROKE as u32),
         ("INK", INK),
+        ("NESTED", NESTED as u32),
+        ("INNER", INNER as u32 + 1),
         ("STRIDE", STRIDE as u32),
         ("ALIVE", ALIVE as u32),
         ("NONE", NONE),

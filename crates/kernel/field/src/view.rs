@@ -93,8 +93,8 @@ pub enum Form<'a> {
     Helix([f32; 5]),
     /// A baked mesh.
     Volume(&'a Arc<Volume>),
-    /// Strokes that melt into one surface; `None` where one of them is a solid.
-    Painting(Option<PaintingView>),
+    /// Strokes that melt into one surface.
+    Painting(PaintingView<'a>),
 }
 
 /// A convex polyhedron: its planes, edges, and the walls that stand on each face's edges.

@@ -1,11 +1,12 @@
 //! Where solids are made: by the graphics card, or by the processor wherever the card cannot.
 
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use midair_field::{MeshSource, Placement, Program, Recipe};
-use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions};
+use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions, can_make};
 use midair_mesh::TriMesh;
 
 pub use crate::settings::Backend as Choice;
@@ -24,12 +25,19 @@ struct Inner {
     state: Mutex<(Choice, State)>,
     /// The device that draws, where something is drawn.
     drawing: Mutex<Option<Drawing>>,
-    /// What happened to a sketch, for the user.
-    untold: Mutex<Option<String>>,
+    /// What happened to the card, for the user: whatever was made meanwhile may be given up.
+    untold: Mutex<Vec<String>>,
     /// Held by whoever opens the card while others wait for it.
     opening: Mutex<()>,
     /// The solid that was made last, whose buffers the next one takes over.
     last: Mutex<Option<GpuSolid>>,
+    /// Bytes that a solid may have on the card at most.
+    budget: AtomicU64,
+    /// How many solids the card made.
+    made: AtomicUsize,
+    /// The user knows that some solid is too large for the card, and that it has no memory left at the moment.
+    told_of_size: AtomicBool,
+    told_of_memory: AtomicBool,
 }
 
 /// What pictures are drawn with.
@@ -64,8 +72,8 @@ pub(super) struct OnCard {
 /// What came of asking the card.
 pub(super) enum Asked {
     Made(OnCard),
-    /// The processor is to do it; where something happened that the user should know, one line.
-    Processor(Option<String>),
+    /// The processor is to do it.
+    Processor,
 }
 
 impl Backend {
@@ -87,7 +95,24 @@ impl Backend {
             untold: Mutex::default(),
             opening: Mutex::default(),
             last: Mutex::default(),
+            budget: AtomicU64::new(GpuOptions::default().budget),
+            made: AtomicUsize::new(0),
+            told_of_size: AtomicBool::new(false),
+            told_of_memory: AtomicBool::new(false),
         }))
+    }
+
+    /// A card that is opened from here on gives a solid so many bytes of its memory at most.
+    pub fn grant(&self, bytes: u64) {
+        self.0.budget.store(bytes, Ordering::Relaxed);
+    }
+
+    /// What a card is opened with.
+    fn options(&self, software: bool) -> GpuOptions {
+        GpuOptions {
+            software,
+            budget: self.0.budget.load(Ordering::Relaxed),
+        }
     }
 
     /// Takes up a setting that changed; a card that was lost is tried again.
@@ -144,9 +169,26 @@ impl Backend {
             (Choice::Processor, _) => "The processor makes solids.".to_owned(),
             (_, State::Unopened) => "The card is asked with the next solid.".to_owned(),
             (_, State::Opening) => "The card is being asked.".to_owned(),
-            (_, State::Open(gpu)) => format!("{} makes solids.", gpu.adapter().name),
+            (_, State::Open(gpu)) => format!(
+                "{} makes solids, each in {} MiB of its memory at most.",
+                gpu.adapter().name,
+                gpu.budget() >> 20
+            ),
             (_, State::Closed(why)) => format!("The processor makes solids: {why}."),
         }
+    }
+
+    /// The card, where one makes solids at the moment.
+    pub fn in_use(&self) -> Option<Arc<Gpu>> {
+        match &self.state().1 {
+            State::Open(gpu) => Some(gpu.clone()),
+            _ => None,
+        }
+    }
+
+    /// How many solids and sketches the card made so far.
+    pub fn made(&self) -> usize {
+        self.0.made.load(Ordering::Relaxed)
     }
 
     fn state(&self) -> std::sync::MutexGuard<'_, (Choice, State)> {
@@ -164,7 +206,7 @@ impl Backend {
                 state.1 = State::Opening;
                 let asked = self.clone();
                 let open = move || {
-                    let opened = asked.open(&GpuOptions::default());
+                    let opened = asked.open(&asked.options(false));
                     // What came of it is in the state.
                     let _ = asked.opened(Choice::Auto, opened);
                 };
@@ -195,10 +237,7 @@ impl Backend {
             (_, State::Closed(_)) => return Err(None),
             (_, state) => *state = State::Opening,
         }
-        let opened = self.open(&GpuOptions {
-            software: true,
-            ..GpuOptions::default()
-        });
+        let opened = self.open(&self.options(true));
         self.opened(Choice::Card, opened).map_err(Some)
     }
 
@@ -223,43 +262,64 @@ impl Backend {
         meshes: &dyn MeshSource,
         early: &dyn Fn(Emitted),
     ) -> Asked {
+        if !can_make(recipe) {
+            return Asked::Processor;
+        }
         let gpu = match self.card() {
             Ok(gpu) => gpu,
             Err(line) => {
-                let mut untold = self.0.untold.lock().unwrap_or_else(PoisonError::into_inner);
-                return Asked::Processor(line.or_else(|| untold.take()));
+                self.tell(line);
+                return Asked::Processor;
             }
         };
         // What a recipe lacks is told by the processor's path.
         let Ok(program) = Program::compile(recipe, &Placement::IDENTITY, step, meshes) else {
-            return Asked::Processor(None);
+            return Asked::Processor;
         };
         match self.on_card(&gpu, &program, early) {
-            Ok(made) => Asked::Made(made),
+            Ok(made) => {
+                self.succeeded();
+                Asked::Made(made)
+            }
             Err(error) => {
-                let line = self.failed(&error);
-                Asked::Processor(line)
+                self.tell(self.failed(&error));
+                Asked::Processor
             }
         }
     }
 
+    fn succeeded(&self) {
+        self.0.made.fetch_add(1, Ordering::Relaxed);
+        self.0.told_of_memory.store(false, Ordering::Relaxed);
+    }
+
     /// A card that failed is not asked again, unless it only lacked memory; what the user should know of it, once.
     fn failed(&self, error: &GpuError) -> Option<String> {
-        if let GpuError::Unsupported(_) | GpuError::Budget { .. } | GpuError::TooFine(_) = error {
-            return None;
+        let line = || {
+            format!(
+                "{}; the processor makes the solid.",
+                capital(&error.to_string())
+            )
+        };
+        match error {
+            GpuError::Unsupported(_) => return None,
+            // Each edit of a large solid asks again: once is enough.
+            GpuError::Budget { .. } | GpuError::TooFine(_) => {
+                let told = self.0.told_of_size.swap(true, Ordering::Relaxed);
+                return (!told).then(line);
+            }
+            _ => {}
         }
         self.forget();
+        // Memory comes back; a card that is gone or answers nonsense does not.
+        if let GpuError::OutOfMemory { .. } | GpuError::Full = error {
+            let told = self.0.told_of_memory.swap(true, Ordering::Relaxed);
+            return (!told).then(line);
+        }
         let mut state = self.state();
         let first = matches!(state.1, State::Open(_));
-        // Memory comes back; a card that is gone or answers nonsense does not.
-        if !matches!(error, GpuError::OutOfMemory { .. } | GpuError::Full) {
-            state.1 = State::Closed(error.to_string());
-        }
-        let line = format!(
-            "{}; the processor makes the solid.",
-            capital(&error.to_string())
-        );
-        first.then_some(line)
+        state.1 = State::Closed(error.to_string());
+        first.then(line)
     }
 
     /// A sketch for the eye by the card, from the one before where there is one; `None` where the processor is to make
@@ -271,7 +331,10 @@ impl Backend {
         meshes: &dyn MeshSource,
         last: Option<GpuSolid>,
     ) -> Option<(GpuSolid, Emitted)> {
-        let gpu = self.card().map_err(|line| self.tell_later(line)).ok()?;
+        if !can_make(recipe) {
+            return None;
+        }
+        let gpu = self.card().map_err(|line| self.tell(line)).ok()?;
         let program = Program::compile(recipe, &Placement::IDENTITY, step, meshes).ok()?;
         let make = || {
             let solid = match last {
@@ -282,19 +345,24 @@ impl Backend {
                 _ => GpuSolid::make_with(&gpu, &program, KEPT)?,
             };
             let surface = solid.emit()?;
+            self.succeeded();
             Ok((solid, surface))
         };
-        make()
-            .map_err(|error| self.tell_later(self.failed(&error)))
-            .ok()
+        make().map_err(|error| self.tell(self.failed(&error))).ok()
     }
 
-    /// A sketch has nobody to tell what happened to it; the next solid does.
-    fn tell_later(&self, line: Option<String>) {
+    /// For whoever asks next what happened.
+    fn tell(&self, line: Option<String>) {
         if let Some(line) = line {
             let mut untold = self.0.untold.lock().unwrap_or_else(PoisonError::into_inner);
-            *untold = Some(line);
+            untold.push(line);
         }
+    }
+
+    /// What happened to the card since it was asked last, a line each.
+    pub(super) fn untold(&self) -> Vec<String> {
+        let mut untold = self.0.untold.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *untold)
     }
 
     fn on_card(
@@ -362,7 +430,7 @@ mod tests {
     fn made(asked: Asked) -> Option<OnCard> {
         match asked {
             Asked::Made(made) => Some(made),
-            Asked::Processor(_) => None,
+            Asked::Processor => None,
         }
     }
 
@@ -371,7 +439,7 @@ mod tests {
         let backend = Backend::forced(Choice::Processor);
         assert!(matches!(
             backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor(None)
+            Asked::Processor
         ));
         backend.follow(Choice::Card);
         assert_eq!(backend.says(), "The processor makes solids.");
@@ -382,7 +450,7 @@ mod tests {
         let backend = Backend::following(Choice::Auto);
         assert!(matches!(
             backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor(None)
+            Asked::Processor
         ));
     }
 
@@ -401,8 +469,9 @@ mod tests {
         let second = made(backend.make(&ball(0.12), 0.01, &(), &|_| ())).unwrap();
         assert!(second.mesh.volume() > 1.5 * first.mesh.volume());
         backend.lose();
-        let Asked::Processor(Some(line)) = backend.make(&ball(0.1), 0.01, &(), &|_| ()) else {
-            panic!("a lost card makes nothing");
+        assert!(made(backend.make(&ball(0.1), 0.01, &(), &|_| ())).is_none());
+        let [line] = &backend.untold()[..] else {
+            panic!("it is told once");
         };
         assert!(
             line.contains("lost") && line.contains("processor"),
@@ -410,8 +479,34 @@ mod tests {
         );
         assert!(matches!(
             backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor(None)
+            Asked::Processor
         ));
+        assert!(backend.untold().is_empty());
         assert!(backend.says().contains("lost"), "{}", backend.says());
+    }
+
+    /// A sketch that finds no memory is the processor's, and so is what is made of it; the card is asked again.
+    #[test]
+    fn a_sketch_that_finds_no_memory_is_told_once() {
+        let backend = Backend::forced(Choice::Card);
+        let Some((solid, _)) = backend.sketch(&ball(0.1), 0.01, &(), None) else {
+            eprintln!("skipped: {}", backend.says());
+            return;
+        };
+        let card = backend.in_use().unwrap();
+        card.starve(Some(1024));
+        assert!(backend.sketch(&ball(0.2), 0.01, &(), Some(solid)).is_none());
+        assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_none());
+        let [line] = &backend.untold()[..] else {
+            panic!("it is told once");
+        };
+        assert!(
+            line.contains("left") && line.contains("processor"),
+            "{line}"
+        );
+        card.starve(None);
+        assert!(backend.sketch(&ball(0.2), 0.01, &(), None).is_some());
+        assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_some());
+        assert!(backend.untold().is_empty());
     }
 }

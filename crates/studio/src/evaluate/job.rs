@@ -40,8 +40,6 @@ pub struct Made {
     pub extract_ms: f64,
     /// Enclosed volume in cubic metres.
     pub volume: f64,
-    /// What was noticed on the way, a line each.
-    pub warnings: Vec<String>,
     /// Field and surface of a painting, from which it is made again where a stroke changed it.
     pub solid: Option<Arc<Solid>>,
     /// Bytes held, about.
@@ -134,7 +132,6 @@ impl Made {
             shape,
             fuse_ms: 0.0,
             extract_ms: 0.0,
-            warnings: Vec::new(),
             solid: None,
             bytes,
             places: None,
@@ -222,25 +219,21 @@ impl Running {
                 }
                 // Of one evaluation there is one surface.
                 let early = |surface| drop(early.set(surface));
-                let line = match backend.make(&recipe, step, &meshes, &early) {
-                    Asked::Made(on_card) => {
-                        if cancelled.load(Ordering::Relaxed) {
-                            return Err(SolidError::Cancelled);
-                        }
-                        let mut made = Made::from_mesh(Arc::new(on_card.mesh));
-                        made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
-                        made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
-                        return Ok(made);
+                if let Asked::Made(on_card) = backend.make(&recipe, step, &meshes, &early) {
+                    if cancelled.load(Ordering::Relaxed) {
+                        return Err(SolidError::Cancelled);
                     }
-                    Asked::Processor(why) => why,
-                };
+                    let mut made = Made::from_mesh(Arc::new(on_card.mesh));
+                    made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
+                    made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
+                    return Ok(made);
+                }
                 let at = Placement::IDENTITY;
                 let solid = match &base {
                     Some(base) => base.remake(&recipe, &at, step, &meshes, &cancelled),
                     None => Solid::make(&recipe, &at, step, &meshes, &cancelled),
                 }?;
                 let mut made = Made::from_mesh(Arc::new(solid.mesh()));
-                made.warnings.extend(line);
                 made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
                 made.extract_ms = solid.extract.as_secs_f64() * 1e3;
                 if matches!(recipe.node(), Node::Canvas(_)) {

@@ -252,9 +252,6 @@ impl Evaluations {
                         self.counted.remove(at);
                         self.count(&made);
                     }
-                    for warning in &made.warnings {
-                        notices.warn(warning.clone());
-                    }
                     self.made.insert(key, made);
                 }
                 Some(Err(reason)) => {
@@ -320,6 +317,9 @@ fn deliver(
     delivered.0.clear();
     evaluations.frame += 1;
     evaluations.fresh.clear();
+    for line in evaluations.backend.untold() {
+        notices.warn(line);
+    }
     evaluations.take_in(&delivery, &mut delivered.0, &mut notices);
     evaluations.drop_stale();
 }

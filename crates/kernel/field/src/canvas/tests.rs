@@ -433,8 +433,13 @@ fn twins_do_not_swell() {
     for others in [[0, 0], [3, 0], [3, 4]] {
         assert!(thick(&of(others)) > 0.06, "{others:?}");
     }
-    let viewed = |twins| of(twins).leaves[0].painting().unwrap().view().is_some();
-    assert!(viewed([3, 4]) && !viewed([3, 3]), "others add twins up");
+    let viewed = |twins| {
+        let program = of(twins);
+        let view = program.leaves[0].painting().unwrap().view();
+        [view.strokes[0].twins, view.strokes[1].twins]
+    };
+    assert_eq!(viewed([3, 3]), [1, 1], "evaluators elsewhere are told");
+    assert_eq!(viewed([3, 4]), [1, 2]);
     let grid = fuse(&of([3, 3]), &FuseOptions::default()).unwrap();
     assert!(grid.is_inside(IVec3::new(0, 4, 0)) && !grid.is_inside(IVec3::new(0, 6, 0)));
 }

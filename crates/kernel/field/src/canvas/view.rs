@@ -3,11 +3,12 @@
 use glam::{Affine3A, Vec2};
 use midair_mesh::Aabb;
 
-use super::paint::{Inking, Painting};
+use super::paint::{Inked, Inking, Painting};
+use crate::Program;
 
-/// A painting of skeletons, in its canvas's frame: metres.
+/// A painting, in its canvas's frame: metres.
 #[derive(Clone, Debug)]
-pub struct PaintingView {
+pub struct PaintingView<'a> {
     /// The reach, 1/reach², and the weights of a point, a line and a polygon of support 1.
     pub family: [f32; 5],
     /// The exponent of its blending.
@@ -15,7 +16,7 @@ pub struct PaintingView {
     /// The least of what strokes make of one unit of potential.
     pub least: f32,
     /// In the order they were painted.
-    pub strokes: Vec<StrokeView>,
+    pub strokes: Vec<StrokeView<'a>>,
     /// Where they are felt, by stroke.
     pub chunks: Vec<ChunkView>,
     /// Parts of led points: start, way, radius at the start, and how much wider it gets.
@@ -24,16 +25,18 @@ pub struct PaintingView {
 
 /// One stroke of a painting.
 #[derive(Clone, Debug)]
-pub struct StrokeView {
+pub struct StrokeView<'a> {
     /// What it is convolved from.
-    pub skeleton: SkeletonView,
+    pub skeleton: SkeletonView<'a>,
     /// The factor on its potential.
     pub weight: f32,
     /// It takes away from those before it.
     pub erase: bool,
-    /// Metres for one unit of potential at its surface.
+    /// The same for strokes that follow each other and are one; 0 for one by itself.
+    pub twins: u32,
+    /// Metres for one unit of potential at its surface; of a painting, the factor on its own.
     pub scale: f32,
-    /// A bound of |∇F|, per metre.
+    /// A bound of |∇F|, per metre; of a solid, metres of the world in one of the canvas.
     pub slope: f32,
     /// To its own frame, where that is not the canvas's.
     pub to_local: Option<Affine3A>,
@@ -41,7 +44,7 @@ pub struct StrokeView {
 
 /// What a stroke is convolved from, in its own frame.
 #[derive(Clone, Debug)]
-pub enum SkeletonView {
+pub enum SkeletonView<'a> {
     /// A led point: the segments of its chunks.
     Points,
     /// Start, unit direction, length, 1/support.
@@ -49,6 +52,10 @@ pub enum SkeletonView {
     /// Origin, two axes in the plane and its normal, 1/support; corners, and edges as start, unit direction and
     /// length, both in supports.
     Polygon([f32; 13], Vec<Vec2>, Vec<[f32; 5]>),
+    /// A solid, in the frame of the world, and how many metres of its φ its potential falls off in either way.
+    Solid(&'a Program, f32),
+    /// A painting with its own potential, in the stroke's frame.
+    Painting(Box<PaintingView<'a>>),
 }
 
 /// A part of a stroke that is looked up by itself.
@@ -63,42 +70,11 @@ pub struct ChunkView {
 }
 
 impl Painting {
-    /// What it is made of; `None` where there is more to it than skeletons, or strokes are one.
-    pub fn view(&self) -> Option<PaintingView> {
-        // Evaluators elsewhere add up; strokes that are one are the processor's.
-        let twins = |pair: &[super::paint::Inked]| pair[0].is_twin(&pair[1]);
-        if self.strokes.windows(2).any(twins) {
-            return None;
-        }
-        let strokes = self.strokes.iter().map(|s| {
-            let skeleton = match &s.kind {
-                Inking::Points => SkeletonView::Points,
-                Inking::Line(from, along, length, inverse) => SkeletonView::Line([
-                    from.x, from.y, from.z, along.x, along.y, along.z, *length, *inverse,
-                ]),
-                Inking::Polygon(area) => {
-                    let mut frame = [area.inverse; 13];
-                    let columns = [area.origin].into_iter().chain(area.axes);
-                    for (to, from) in frame.iter_mut().zip(columns.flat_map(|c| c.to_array())) {
-                        *to = from;
-                    }
-                    let edges = area.edges.iter().map(|e| e.numbers()).collect();
-                    SkeletonView::Polygon(frame, area.corners.clone(), edges)
-                }
-                Inking::Field(..) | Inking::Canvas(_) => return None,
-            };
-            Some(StrokeView {
-                skeleton,
-                weight: s.weight,
-                erase: s.erase,
-                scale: s.scale,
-                slope: s.slope,
-                to_local: s.to_local,
-            })
-        });
+    /// What it is made of.
+    pub fn view(&self) -> PaintingView<'_> {
         let f = &self.family;
-        Some(PaintingView {
-            strokes: strokes.collect::<Option<_>>()?,
+        PaintingView {
+            strokes: self.strokes.iter().map(Inked::view).collect(),
             family: [f.reach, f.inverse, f.point, f.line, f.polygon],
             blend: self.blend,
             least: self.least,
@@ -119,6 +95,37 @@ impl Painting {
                     [a.x, a.y, a.z, b.x, b.y, b.z, s.radius, s.wider]
                 })
                 .collect(),
-        })
+        }
+    }
+}
+
+impl Inked {
+    fn view(&self) -> StrokeView<'_> {
+        let skeleton = match &self.kind {
+            Inking::Points => SkeletonView::Points,
+            Inking::Line(from, along, length, inverse) => SkeletonView::Line([
+                from.x, from.y, from.z, along.x, along.y, along.z, *length, *inverse,
+            ]),
+            Inking::Polygon(area) => {
+                let mut frame = [area.inverse; 13];
+                let columns = [area.origin].into_iter().chain(area.axes);
+                for (to, from) in frame.iter_mut().zip(columns.flat_map(|c| c.to_array())) {
+                    *to = from;
+                }
+                let edges = area.edges.iter().map(|e| e.numbers()).collect();
+                SkeletonView::Polygon(frame, area.corners.clone(), edges)
+            }
+            Inking::Field(program, radius) => SkeletonView::Solid(program, *radius),
+            Inking::Canvas(painting) => SkeletonView::Painting(Box::new(painting.view())),
+        };
+        StrokeView {
+            skeleton,
+            weight: self.weight,
+            erase: self.erase,
+            twins: self.twins,
+            scale: self.scale,
+            slope: self.slope,
+            to_local: self.to_local,
+        }
     }
 }
