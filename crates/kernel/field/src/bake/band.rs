@@ -2,12 +2,12 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{UVec3, Vec3};
-use midair_mesh::Aabb;
+use glam::UVec3;
 use rayon::prelude::*;
 
 use super::bars::Bars;
 use super::frame::{Frame, SIDE, at};
+use super::lanes::{after, before};
 use super::points::{NONE, Points};
 use super::triangle::Triangle;
 use super::volume::{BAND, MOST_VALUES, NEAR_LEN, too_many_values};
@@ -30,7 +30,7 @@ pub(super) struct Band {
     pub places: Vec<UVec3>,
     /// A bit for each node that some near brick needs, a word for each z.
     pub masks: Vec<[u64; SIDE]>,
-    pub blocks: Vec<Box<Points>>,
+    pub blocks: Vec<Points>,
 }
 
 impl Band {
@@ -67,6 +67,12 @@ impl Band {
 
     pub fn slot(&self, place: UVec3) -> u32 {
         self.slots[(place.x + self.size.x * (place.y + self.size.y * place.z)) as usize]
+    }
+
+    /// The slots of the bar that begins at `place`.
+    pub fn bar(&self, place: UVec3) -> &[u32] {
+        let first = self.size.x * (place.y + self.size.y * place.z);
+        &self.slots[first as usize..(first + self.size.x) as usize]
     }
 
     /// The slot `offset` blocks away, or [`NONE`].
@@ -132,21 +138,21 @@ fn near_bricks(
     let ball = BAND + half * 3.0f32.sqrt();
     let one = |t: &Triangle| {
         let v = &t.v;
-        let around = Aabb::new(v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])).grown(BAND);
-        let lo = ((around.min - side) / side)
-            .ceil()
-            .max(Vec3::ZERO)
-            .as_uvec3();
-        let hi = (around.max / side)
-            .floor()
-            .max(Vec3::ZERO)
-            .as_uvec3()
-            .min(last);
+        let (min, max) = (
+            v[0].min(v[1]).min(v[2]) - BAND,
+            v[0].max(v[1]).max(v[2]) + BAND,
+        );
+        let range = |k: usize| {
+            let low = (after(min[k] / side) - 1).max(0) as u32;
+            low..=(before(max[k] / side).max(0) as u32).min(last[k])
+        };
+        let (xs, ys, zs) = (range(0), range(1), range(2));
+        let alone = [&xs, &ys, &zs].iter().all(|r| r.start() == r.end());
         let level = t.n.dot(v[0]);
         let slab = BAND + half * t.n.abs().element_sum();
-        for z in lo.z..=hi.z {
-            for y in lo.y..=hi.y {
-                for x in lo.x..=hi.x {
+        for z in zs {
+            for y in ys.clone() {
+                for x in xs.clone() {
                     let place = UVec3::new(x, y, z);
                     let mark = &near[frame.brick_index(place)];
                     if mark.load(Ordering::Relaxed) {
@@ -157,7 +163,7 @@ fn near_bricks(
                         (t.n.dot(centre) - level).abs() > slab
                             || t.distance_squared(centre) > ball * ball * 1.0001
                     };
-                    if lo == hi || !beyond() {
+                    if alone || !beyond() {
                         mark.store(true, Ordering::Relaxed);
                     }
                 }

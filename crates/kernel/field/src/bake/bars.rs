@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use glam::{UVec3, Vec3};
+use glam::UVec3;
 use midair_mesh::Aabb;
 use rayon::prelude::*;
 
 use super::band::SPLAT;
 use super::frame::SIDE;
+use super::lanes::{after, before};
 use super::triangle::Triangle;
 use super::{BakeError, Progress};
 
@@ -136,20 +137,25 @@ impl<'a> Bars<'a> {
     #[inline(always)]
     fn near(&self, t: &Triangle) -> [Range<u32>; 2] {
         let b = reach(t);
-        let side = SIDE as f32;
-        let size = self.size.as_vec3();
-        let lo = ((b.min - (side - 1.0)) / side)
-            .ceil()
-            .clamp(Vec3::ZERO, size);
-        let hi = (b.max / side).floor().min(size - 1.0) + 1.0;
-        let hi = hi.max(lo);
-        [lo.y as u32..hi.y as u32, lo.z as u32..hi.z as u32]
+        [
+            blocks(b.min.y, b.max.y, self.size.y),
+            blocks(b.min.z, b.max.z, self.size.z),
+        ]
     }
+}
+
+/// The blocks along one axis that have nodes from `low` to `high`.
+#[inline(always)]
+fn blocks(low: f32, high: f32, size: u32) -> Range<u32> {
+    let first = after(low).max(0) as u32 / SIDE as u32;
+    let end = before(high).max(0) as u32 / SIDE as u32 + 1;
+    first.min(size)..end.clamp(first.min(size), size)
 }
 
 /// The box of the places that measure a triangle.
 #[inline(always)]
 pub(super) fn reach(t: &Triangle) -> Aabb {
     let [a, b, c] = t.v;
-    Aabb::new(a.min(b).min(c), a.max(b).max(c)).grown(SPLAT)
+    let (min, max) = (a.min(b).min(c) - SPLAT, a.max(b).max(c) + SPLAT);
+    Aabb { min, max }
 }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::band::Band;
 use super::bars::Bars;
 use super::frame::SIDE;
+use super::lanes::{after, before};
 use super::points::NONE;
 use super::triangle::Triangle;
 use super::{BakeError, Progress};
@@ -45,9 +46,11 @@ impl Signs {
                 if progress.is_cancelled() {
                     return Self::of(&[], Vec::new(), n.x);
                 }
-                let row = (n.x * (place.y + n.y * place.z)) as usize;
-                let slots = &band.slots[row..row + n.x as usize];
-                Self::of(slots, crossings(place, group.of(i), bars.triangles), n.x)
+                Self::of(
+                    band.bar(place),
+                    crossings(place, group.of(i), bars.triangles),
+                    n.x,
+                )
             };
             let found: Vec<Self> = (0..group.len()).into_par_iter().map(one).collect();
             progress.check()?;
@@ -99,21 +102,17 @@ impl Signs {
 /// Where triangles pass the rows of the bar that begins with block `place`.
 fn crossings(place: UVec3, ids: &[u32], triangles: &[Triangle]) -> Vec<Crossing> {
     let first = UVec2::new(place.y, place.z) * SIDE as u32;
-    let low = first.as_vec2();
-    let high = low + (SIDE - 1) as f32;
+    let low = first.as_ivec2();
     let mut found = Vec::new();
     let mut turns = [0i32; SIDE * SIDE];
     for &id in ids {
         let t = &triangles[id as usize];
         let [a, b, c] = t.v;
         let (least, most) = (a.min(b).min(c), a.max(b).max(c));
-        let (y0, y1) = (least.y.ceil().max(low.x), most.y.floor().min(high.x));
-        let (z0, z1) = (least.z.ceil().max(low.y), most.z.floor().min(high.y));
-        if !(y0 <= y1 && z0 <= z1) {
-            continue;
-        }
-        for z in z0 as u32..=z1 as u32 {
-            for y in y0 as u32..=y1 as u32 {
+        let ys = after(least.y).max(low.x)..=before(most.y).min(low.x + 7);
+        for z in after(least.z).max(low.y)..=before(most.z).min(low.y + 7) {
+            for y in ys.clone() {
+                let (y, z) = (y as u32, z as u32);
                 let at = DVec2::new(f64::from(y), f64::from(z));
                 if let Some((x, turn)) = through(t.v, at) {
                     let row = y - first.x + SIDE as u32 * (z - first.y);

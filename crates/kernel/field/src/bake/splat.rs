@@ -1,13 +1,15 @@
 //! Distances measured by the nodes close to each triangle.
 
-use glam::{UVec3, Vec2};
+use std::sync::Mutex;
+
+use glam::UVec3;
 use rayon::prelude::*;
 
 use super::band::{Band, SPLAT, needed};
 use super::bars::{Bars, reach};
 use super::eight::Seen;
 use super::frame::SIDE;
-use super::lanes::{EIGHT, F8, Simd, U8, lanes};
+use super::lanes::{EIGHT, F8, Simd, U8, after, before, lanes};
 use super::points::{NONE, Points, Row, of_row};
 use super::triangle::Triangle;
 use super::{BakeError, Progress};
@@ -42,62 +44,65 @@ pub(super) fn blocks(
     band: &Band,
     bars: &Bars,
     progress: &Progress,
-) -> Result<Vec<Box<Points>>, BakeError> {
+) -> Result<Vec<Points>, BakeError> {
     let n = band.size;
-    let mut blocks = Vec::with_capacity(band.places.len());
+    // All in one piece of memory, which is had again sooner than many small ones.
+    let all = (0..band.places.len()).into_par_iter().with_min_len(16);
+    let mut blocks: Vec<Points> = all.map(|_| Points::UNKNOWN).collect();
+    let spare = Mutex::new(Vec::new());
+    let mut rest = &mut blocks[..];
     for layers in &bars.groups {
         let group = bars.group(layers, progress)?;
-        let one = |bar: &mut Bar, i: usize| {
-            if progress.is_cancelled() {
-                return Vec::new();
-            }
+        let mut parts = Vec::with_capacity(group.len());
+        for i in 0..group.len() {
             let place = UVec3::new(0, i as u32 % n.y, layers.start + i as u32 / n.y);
-            bar.fill(band, place, group.of(i), bars.triangles)
+            let count = band.bar(place).iter().filter(|s| **s != NONE).count();
+            let (own, after) = rest.split_at_mut(count);
+            parts.push((place, group.of(i), own));
+            rest = after;
+        }
+        let one = |(place, ids, out): (UVec3, &[u32], &mut [Points])| {
+            if out.is_empty() || progress.is_cancelled() {
+                return;
+            }
+            let taken = spare.lock().ok().and_then(|mut s| s.pop());
+            let mut bar = taken.unwrap_or_else(|| Bar::new(n.x));
+            bar.fill(band, place, ids, bars.triangles, out);
+            if let Ok(mut spare) = spare.lock() {
+                spare.push(bar);
+            }
         };
-        let found: Vec<Vec<Box<Points>>> = (0..group.len())
-            .into_par_iter()
-            .with_max_len(1)
-            .map_init(|| Bar::new(n.x), one)
-            .collect();
+        parts.into_par_iter().with_max_len(1).for_each(one);
         progress.check()?;
         progress.set_fraction(0.15 + 0.35 * layers.end as f32 / n.z as f32);
-        blocks.extend(found.into_iter().flatten());
     }
     Ok(blocks)
 }
 
 impl Bar {
-    /// The blocks of the bar that begins at `place`.
+    /// Measures the blocks of the bar that begins at `place`.
     fn fill(
         &mut self,
         band: &Band,
         place: UVec3,
         ids: &[u32],
         triangles: &[Triangle],
-    ) -> Vec<Box<Points>> {
-        let n = band.size;
-        let row = (n.x * (place.y + n.y * place.z)) as usize;
-        let slots = &band.slots[row..row + n.x as usize];
-        let Some(first) = slots.iter().copied().find(|s| *s != NONE) else {
-            return Vec::new();
-        };
-        let count = slots.iter().filter(|s| **s != NONE).count();
-        let masks = &band.masks[first as usize..first as usize + count];
+        out: &mut [Points],
+    ) {
+        let slots = band.bar(place);
+        let first = slots.iter().copied().find(|s| *s != NONE).unwrap_or(0) as usize;
+        let masks = &band.masks[first..first + out.len()];
         self.wanted = (0..ROWS)
             .filter(|r| masks.iter().any(|m| needed(m, *r) != 0))
             .fold(0, |all, r| all | 1 << r);
         self.square.fill(f32::INFINITY);
         self.triangle.fill(NONE);
         measure(self, place * SIDE as u32, ids, triangles);
-        let near = (0..n.x).filter(|x| slots[*x as usize] != NONE);
-        near.zip(masks)
-            .map(|(x, mask)| {
-                let mut block = Box::new(Points::UNKNOWN);
-                let first = UVec3::new(x, place.y, place.z) * SIDE as u32;
-                offset(self, first, triangles, mask, &mut block);
-                block
-            })
-            .collect()
+        let near = (0..).zip(slots).filter(|(_, s)| **s != NONE);
+        for ((x, _), (mask, block)) in near.zip(masks.iter().zip(out)) {
+            let first = UVec3::new(x, place.y, place.z) * SIDE as u32;
+            offset(self, first, triangles, mask, block);
+        }
     }
 }
 
@@ -107,60 +112,66 @@ lanes!(measure, measure_avx2, measure_any, (bar: &mut Bar, first: UVec3, ids: &[
 #[inline(always)]
 fn measure_any<S: Simd>(s: S, bar: &mut Bar, first: UVec3, ids: &[u32], triangles: &[Triangle]) {
     let width = bar.width;
-    let top = (width - 2 * SIDE) as f32 - 1.0;
-    let low = Vec2::new(first.y as f32, first.z as f32);
-    let high = low + (SIDE - 1) as f32;
+    let top = (width - 2 * SIDE) as i32 - 1;
+    let (y0, z0) = (first.y as i32, first.z as i32);
     for &id in ids {
         let t = &triangles[id as usize];
         let b = reach(t);
         let seen = Seen::new(t);
-        let y = (b.min.y.ceil().max(low.x), b.max.y.floor().min(high.x));
-        let z = (b.min.z.ceil().max(low.y), b.max.z.floor().min(high.y));
-        let x = (b.min.x.ceil().max(0.0), b.max.x.floor().min(top));
-        let steep = if t.n.x.abs() > 1e-3 { 1.0 / t.n.x } else { 0.0 };
-        let span = (SPLAT * steep).abs();
-        let mut pz = z.0;
-        while pz <= z.1 {
-            let gz = (b.min.z + SPLAT - pz).max(pz - (b.max.z - SPLAT)).max(0.0);
-            let mut py = y.0;
-            while py <= y.1 {
-                let gy = (b.min.y + SPLAT - py).max(py - (b.max.y - SPLAT)).max(0.0);
-                let row = (py - low.x) as usize + SIDE * (pz - low.y) as usize;
-                let (mut from, mut to) = x;
-                let level = t.n.y * (py - t.v[0].y) + t.n.z * (pz - t.v[0].z);
-                if steep != 0.0 {
-                    // Where the row passes the triangle's plane.
-                    let at = t.v[0].x - level * steep;
-                    from = from.max(at - span - 1e-3);
-                    to = to.min(at + span + 1e-3);
-                } else if level.abs() > SPLAT + 1e-3 * (to - from + 2.0) {
-                    to = from - 1.0;
+        let x = [after(b.min.x).max(0), before(b.max.x).min(top)];
+        let y = [after(b.min.y).max(y0), before(b.max.y).min(y0 + 7)];
+        let z = [after(b.min.z).max(z0), before(b.max.z).min(z0 + 7)];
+        let name = U8::splat(s, id);
+        // How far the plane of the triangle may be from the middle of a row.
+        let (middle, half) = (0.5 * (x[0] + x[1]) as f32, 0.5 * (x[1] - x[0]) as f32);
+        let slab = SPLAT + t.n.x.abs() * half + 1e-3;
+        let steep = x[1] - x[0] >= 2 * EIGHT as i32 && t.n.x.abs() > 1e-3;
+        for pz in z[0]..=z[1] {
+            let fz = pz as f32;
+            let gz = gap(fz, b.min.z, b.max.z);
+            let level = t.n.z * (fz - t.v[0].z) + t.n.x * (middle - t.v[0].x);
+            for py in y[0]..=y[1] {
+                let fy = py as f32;
+                let gy = gap(fy, b.min.y, b.max.y);
+                let row = (py - y0 + SIDE as i32 * (pz - z0)) as usize;
+                let height = level + t.n.y * (fy - t.v[0].y);
+                if gy * gy + gz * gz > SPLAT * SPLAT
+                    || height.abs() > slab
+                    || bar.wanted >> row & 1 == 0
+                {
+                    continue;
                 }
-                if gy * gy + gz * gz > SPLAT * SPLAT || bar.wanted >> row & 1 == 0 {
-                    to = from - 1.0;
+                let [mut from, mut to] = x;
+                if steep {
+                    // A long row is near only around where it passes the plane.
+                    let (at, span) = (middle - height / t.n.x, SPLAT / t.n.x.abs() + 1e-3);
+                    from = from.max(after((at - span).max(0.0)));
+                    to = to.min(before((at + span).min(top as f32)));
                 }
-                // The next whole node.
-                let mut at = from as usize;
-                at += usize::from((at as f32) < from);
-                while at as f32 <= to {
-                    let d = seen.squares(s, F8::from(s, at as f32), py, pz);
-                    let i = row * width + SIDE + at;
+                while from <= to {
+                    let d = seen.squares(s, F8::from(s, from as f32), fy, fz);
+                    let i = row * width + SIDE + from as usize;
                     // Strictly less: among equals the first triangle stays.
-                    let before = F8::load(s, &bar.square, i);
-                    let closer = d.less(before);
+                    let known = F8::load(s, &bar.square, i);
+                    let closer = d.less(known);
                     if closer.bits() != 0 {
-                        d.min(before).store(&mut bar.square, i);
-                        let known = U8::load(s, &bar.triangle, i);
-                        let known = closer.choose_ids(U8::splat(s, id), known);
-                        known.store(&mut bar.triangle, i);
+                        d.min(known).store(&mut bar.square, i);
+                        let ids = U8::load(s, &bar.triangle, i);
+                        closer.choose_ids(name, ids).store(&mut bar.triangle, i);
                     }
-                    at += EIGHT;
+                    from += EIGHT as i32;
                 }
-                py += 1.0;
             }
-            pz += 1.0;
         }
     }
+}
+
+/// How far a node is beyond a triangle whose box, and [`SPLAT`] around, goes from `low` to `high`.
+#[inline(always)]
+fn gap(at: f32, low: f32, high: f32) -> f32 {
+    let (below, above) = (low + SPLAT - at, at - (high - SPLAT));
+    let most = if below > above { below } else { above };
+    if most > 0.0 { most } else { 0.0 }
 }
 
 lanes!(offset, offset_avx2, offset_any, (bar: &Bar, first: UVec3, triangles: &[Triangle], mask: &[u64; SIDE], out: &mut Points));

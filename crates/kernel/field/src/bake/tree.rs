@@ -55,9 +55,11 @@ struct Node {
 impl<'a> Tree<'a> {
     /// `triangles` must not be empty.
     pub fn new(triangles: &'a [Triangle]) -> Self {
-        let bounds = triangles.iter().fold(Aabb::EMPTY, |b, t| {
-            b.including(t.v[0]).including(t.v[1]).including(t.v[2])
-        });
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for p in triangles.iter().flat_map(|t| &t.v) {
+            (min, max) = (min.min(*p), max.max(*p));
+        }
+        let bounds = Aabb { min, max };
         let scale = 1023.0 / bounds.size().max_element().max(f32::MIN_POSITIVE);
         let mut keyed: Vec<(u32, u32)> = triangles
             .par_iter()
@@ -72,8 +74,11 @@ impl<'a> Tree<'a> {
         let order: Vec<u32> = keyed.into_iter().map(|(_, i)| i).collect();
 
         let leaf = |l: &[u32]| {
-            let corners = l.iter().flat_map(|t| triangles[*t as usize].v);
-            corners.fold(Aabb::EMPTY, |b, p| b.including(p))
+            let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            for p in l.iter().flat_map(|t| &triangles[*t as usize].v) {
+                (min, max) = (min.min(*p), max.max(*p));
+            }
+            Aabb { min, max }
         };
         let mut bounds: Vec<Aabb> = order.par_chunks(LEAF).with_min_len(64).map(leaf).collect();
         let mut boxes = Vec::new();

@@ -6,14 +6,12 @@ use rayon::prelude::*;
 use super::band::{Band, SPLAT, needed};
 use super::eight::{Found, dot, offsets};
 use super::frame::SIDE;
-use super::lanes::{EIGHT, F8, Simd, U8, lanes};
+use super::lanes::{EIGHT, F8, Simd, U8, lanes, whole};
 use super::points::{BLOCK, NONE, Points, Row, of_row};
 use super::tree::Tree;
 use super::triangle::Triangle;
 use super::{BakeError, Progress};
 
-/// How often a node looks at its foot.
-const FEET: usize = 2;
 const ROWS: usize = SIDE * SIDE;
 
 /// A block of a column with its place in it and its nodes that are needed.
@@ -206,8 +204,8 @@ pub(super) fn distances(band: &Band, slot: usize, tree: &Tree) -> [f32; BLOCK] {
 
 lanes!(measure, measure_avx2, measure_any, (band: &Band, slot: usize, triangles: &[Triangle], out: &mut [f32; BLOCK]));
 
-/// Each node measures the triangle that it heard of, and then, twice, what the node knows that is nearest
-/// to its own foot on the plane of that triangle: where a surface bends little, the closest one is there.
+/// Each node measures the triangle that it heard of, and then what the node knows that is nearest to its
+/// own foot on the plane of that triangle: where a surface bends little, the closest one is there.
 #[inline(always)]
 fn measure_any<S: Simd>(
     s: S,
@@ -219,36 +217,39 @@ fn measure_any<S: Simd>(
     let (own, mask) = (&band.blocks[slot], &band.masks[slot]);
     let first = band.places[slot] * SIDE as u32;
     let exact = F8::splat(s, SPLAT * SPLAT);
+    let low = F8::splat(s, 0.0);
+    let top = (band.size * SIDE as u32 - 1).as_vec3();
+    let high = [
+        F8::splat(s, top.x),
+        F8::splat(s, top.y),
+        F8::splat(s, top.z),
+    ];
     let none = U8::splat(s, NONE);
     let zero = U8::splat(s, 0);
     for row in (0..ROWS).filter(|r| needed(mask, *r) != 0) {
         let at = SIDE * row;
         let p = of_row(s, first, row);
         let ids = U8::load(s, &own.triangle, at);
-        let mut ids = ids.same(none).choose_ids(zero, ids);
-        let mut found = offsets(s, triangles, &ids.ids(), p);
+        let ids = ids.same(none).choose_ids(zero, ids);
+        let found = offsets(s, triangles, &ids.ids(), p);
         let mut square = found.square;
-        let mut open = exact.less(square);
-        for _ in 0..FEET {
-            if open.bits() == 0 {
-                break;
-            }
-            let mut beside = [0; EIGHT];
+        let mut left = exact.less(square).bits();
+        if left != 0 {
             let near = beside_foot(s, p, &found);
-            let near = [near[0].lanes(), near[1].lanes(), near[2].lanes()];
-            for i in 0..EIGHT {
-                beside[i] = known(band, [near[0][i], near[1][i], near[2][i]]);
+            let x = near[0].max(low).min(high[0]).lanes();
+            let y = near[1].max(low).min(high[1]).lanes();
+            let z = near[2].max(low).min(high[2]).lanes();
+            let mut tried = [NONE; EIGHT];
+            while left != 0 {
+                let i = left.trailing_zeros() as usize;
+                left &= left - 1;
+                tried[i] = known(band, x[i], y[i], z[i]);
             }
-            let tried = U8::load(s, &beside, 0);
+            let tried = U8::load(s, &tried, 0);
             let tried = tried.same(none).choose_ids(ids, tried);
-            let tried = open.choose_ids(tried, ids);
-            if tried.same(ids).bits() == 0xff {
-                break;
+            if tried.same(ids).bits() != 0xff {
+                square = offsets(s, triangles, &tried.ids(), p).square.min(square);
             }
-            found = offsets(s, triangles, &tried.ids(), p);
-            square = found.square.min(square);
-            open = open & exact.less(found.square);
-            ids = tried;
         }
         square.sqrt().store(out, at);
     }
@@ -280,19 +281,15 @@ fn beside_foot<S: Simd>(s: S, p: [F8<S>; 3], found: &Found<S>) -> [F8<S>; 3] {
 
 /// The triangle that a node heard of.
 #[inline(always)]
-fn known(band: &Band, at: [f32; 3]) -> u32 {
-    // What is below 0 becomes 0.
-    let at = UVec3::new(at[0] as u32, at[1] as u32, at[2] as u32);
-    let place = at / SIDE as u32;
-    if place.x >= band.size.x || place.y >= band.size.y || place.z >= band.size.z {
-        return NONE;
-    }
-    let slot = band.slot(place);
+fn known(band: &Band, x: f32, y: f32, z: f32) -> u32 {
+    let at = [whole(x) as u32, whole(y) as u32, whole(z) as u32];
+    let [x, y, z] = [at[0] / 8, at[1] / 8, at[2] / 8];
+    let slot = band.slots[(x + band.size.x * (y + band.size.y * z)) as usize];
     if slot == NONE {
         return NONE;
     }
-    let i = at % SIDE as u32;
-    band.blocks[slot as usize].triangle[(i.x + 8 * (i.y + 8 * i.z)) as usize & (BLOCK - 1)]
+    let i = at[0] % 8 + 8 * (at[1] % 8) + 64 * (at[2] % 8);
+    band.blocks[slot as usize].triangle[i as usize]
 }
 
 const BESIDE: [IVec3; 6] = [

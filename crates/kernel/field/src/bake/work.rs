@@ -134,10 +134,11 @@ struct Corner {
 }
 
 fn bounds_of(triangles: &[[Vec3; 3]]) -> Aabb {
-    triangles
-        .iter()
-        .flatten()
-        .fold(Aabb::EMPTY, |b, p| b.including(*p))
+    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in triangles.iter().flatten() {
+        (min, max) = (min.min(*p), max.max(*p));
+    }
+    Aabb { min, max }
 }
 
 /// The distance of every brick corner that lies in no block.
