@@ -29,8 +29,6 @@ pub(super) trait Simd: Copy {
     /// All bits of a lane, or none.
     fn less(self, a: Self::F, b: Self::F) -> Self::F;
     fn both(self, a: Self::F, b: Self::F) -> Self::F;
-    /// What is in `a` and not in `b`.
-    fn but(self, a: Self::F, b: Self::F) -> Self::F;
     fn choose(self, which: Self::F, a: Self::F, b: Self::F) -> Self::F;
     /// A bit for each lane.
     fn bits(self, which: Self::F) -> u32;
@@ -178,11 +176,6 @@ impl<S: Simd> F8<S> {
 
 impl<S: Simd> M8<S> {
     #[inline(always)]
-    pub fn but(self, b: Self) -> Self {
-        Self(self.0, self.0.but(self.1, b.1))
-    }
-
-    #[inline(always)]
     pub fn choose(self, a: F8<S>, b: F8<S>) -> F8<S> {
         F8(self.0, self.0.choose(self.1, a.1, b.1))
     }
@@ -297,10 +290,6 @@ impl Simd for Plain {
     #[inline(always)]
     fn both(self, a: Lanes, b: Lanes) -> Lanes {
         each(a, b, |a, b| f32::from_bits(a.to_bits() & b.to_bits()))
-    }
-    #[inline(always)]
-    fn but(self, a: Lanes, b: Lanes) -> Lanes {
-        each(a, b, |a, b| f32::from_bits(a.to_bits() & !b.to_bits()))
     }
     #[inline(always)]
     fn choose(self, which: Lanes, a: Lanes, b: Lanes) -> Lanes {
@@ -452,10 +441,6 @@ mod avx2 {
             call!(_mm256_and_ps(a, b))
         }
         #[inline(always)]
-        fn but(self, a: __m256, b: __m256) -> __m256 {
-            call!(_mm256_andnot_ps(b, a))
-        }
-        #[inline(always)]
         fn choose(self, which: __m256, a: __m256, b: __m256) -> __m256 {
             call!(_mm256_blendv_ps(b, a, which))
         }
@@ -586,7 +571,7 @@ mod tests {
         let (x, y) = (F8::load(s, a, 0), F8::load(s, b, 0));
         let (p, q) = (U8::load(s, u, 0), U8::load(s, v, 0));
         let less = x.less(y);
-        let mut out = vec![less.bits(), p.same(q).bits(), less.but(p.same(q)).bits()];
+        let mut out = vec![less.bits(), p.same(q).bits(), (less & p.same(q)).bits()];
         for f in [
             x + y,
             x - y,
