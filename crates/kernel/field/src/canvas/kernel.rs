@@ -108,6 +108,22 @@ impl Family {
         if f > 0.0 { f } else { 0.0 }
     }
 
+    /// F of a polygon of which one edge alone is felt, and neither of its ends, as seen from a place at
+    /// (x, y) whose height squared is `h2`; `right` is the angle of whole turns that the polygon makes
+    /// around what lies right of the edge. As [`Self::at_polygon`] up to rounding.
+    #[inline(always)]
+    pub fn beside_edge(&self, edge: &Edge, x: f32, y: f32, h2: f32, right: f32) -> f32 {
+        let a = 1.0 - h2;
+        let a = if a > 0.0 { a } else { 0.0 };
+        let e = edge.left(x, y);
+        let e2 = e * e;
+        let left = a - e2;
+        let half = (if left > 0.0 { left } else { 0.0 }).sqrt();
+        let whole = edge_integral(a, e2, half);
+        // What is not felt of the plane left of the edge: all around behind it, nothing before it.
+        self.polygon_of(2.0 * e * whole, 2.0 * turn(half, -e) + right, h2)
+    }
+
     /// F of a plane without end at the distance `h`, in supports.
     pub fn at_plane(&self, h: f32) -> f32 {
         let a = (1.0 - h * h).max(0.0);
@@ -173,8 +189,7 @@ impl Edge {
         let a = 1.0 - h2;
         let a = if a > 0.0 { a } else { 0.0 };
         let (qx, qy) = (self.from.x - x, self.from.y - y);
-        // Positive where the place lies to the left.
-        let e = qx * self.along.y - qy * self.along.x;
+        let e = self.left(x, y);
         let s0 = qx * self.along.x + qy * self.along.y;
         let s1 = s0 + self.length;
         let e2 = e * e;
@@ -185,15 +200,51 @@ impl Edge {
         let (y0, x0) = (e * self.length, e2 + s0 * s1);
         let (y1, x1) = (e * (high - low), e2 + high * low);
         let rest = turn(y0 * x1 - x0 * y1, x0 * x1 + y0 * y1);
-        // G/ρ² = a²/2 − a(e² + s²)/2 + (e² + s²)²/6 along the edge.
-        let c0 = a * a * 0.5 - a * e2 * 0.5 + e2 * e2 * (1.0 / 6.0);
-        let c2 = (e2 * (1.0 / 3.0) - a * 0.5) * (1.0 / 3.0);
-        let whole = |s: f32| {
-            let s2 = s * s;
-            s * (c0 + s2 * (c2 + s2 * (1.0 / 30.0)))
-        };
-        (e * (whole(high) - whole(low)), rest)
+        let whole = edge_integral(a, e2, high) - edge_integral(a, e2, low);
+        (e * whole, rest)
     }
+
+    /// How far a place lies to the left of it.
+    #[inline(always)]
+    pub fn left(&self, x: f32, y: f32) -> f32 {
+        (self.from.x - x) * self.along.y - (self.from.y - y) * self.along.x
+    }
+
+    /// How far a place lies from it.
+    pub fn distance(&self, p: Vec2) -> f32 {
+        let q = p - self.from;
+        (q - self.along * q.dot(self.along).clamp(0.0, self.length)).length()
+    }
+
+    /// A place `left` of it, where `p` is held against its line.
+    pub fn beside(&self, p: Vec2, left: f32) -> Vec2 {
+        p + self.along.perp() * (left - self.left(p.x, p.y))
+    }
+}
+
+/// G/ρ² = a²/2 − a(e² + s²)/2 + (e² + s²)²/6 along an edge from its middle, across from the place, to `s`.
+#[inline(always)]
+fn edge_integral(a: f32, e2: f32, s: f32) -> f32 {
+    let c0 = a * a * 0.5 - a * e2 * 0.5 + e2 * e2 * (1.0 / 6.0);
+    let c2 = (e2 * (1.0 / 3.0) - a * 0.5) * (1.0 / 3.0);
+    let s2 = s * s;
+    s * (c0 + s2 * (c2 + s2 * (1.0 / 30.0)))
+}
+
+/// How often a polygon goes around a place, anticlockwise.
+pub(super) fn turns(corners: &[Vec2], p: Vec2) -> i32 {
+    let mut count = 0;
+    let mut a = corners[corners.len() - 1];
+    for &b in corners {
+        if (a.y > p.y) != (b.y > p.y) {
+            let x = a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+            if p.x < x {
+                count += if b.y > a.y { 1 } else { -1 };
+            }
+        }
+        a = b;
+    }
+    count
 }
 
 /// atan2(y, x) to 1e-7, free of calls so that loops over it become vector code; 0 where both are 0.
@@ -380,6 +431,52 @@ mod tests {
             };
             let exact = sum(x) / sum(-1.0);
             assert!((exact - f64::from(half_space(x as f32))).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn one_edge_is_as_all_edges_where_it_alone_is_felt() {
+        let family = Family::new(1.75);
+        let plain = [(-4.0, -3.0), (5.0, -3.5), (4.5, 4.0), (-4.0, 3.0)];
+        // Goes around once more within, and crosses itself.
+        let wound = [
+            (-9.0, -9.0),
+            (9.0, -9.0),
+            (9.0, 9.0),
+            (-4.0, 9.0),
+            (-4.0, -5.0),
+            (5.0, -5.0),
+            (5.0, 4.0),
+            (-9.0, 4.0),
+        ];
+        for corners in [&plain[..], &wound[..]] {
+            let corners: Vec<Vec2> = corners.iter().map(|c| Vec2::new(c.0, c.1)).collect();
+            let edges = Edge::all(&corners);
+            for (i, edge) in edges.iter().enumerate() {
+                let next = corners[(i + 1) % corners.len()];
+                let middle = 0.3 * corners[i] + 0.7 * next;
+                let near = edges.iter().filter(|e| e.distance(middle) < 2.3).count();
+                if near != 1 {
+                    continue;
+                }
+                let right = turns(&corners, edge.beside(middle, -0.5)) as f32;
+                for k in 0..400 {
+                    let (along, off) =
+                        ((k % 20) as f32 * 0.05 - 0.5, (k / 20) as f32 * 0.13 - 1.25);
+                    let p = edge.beside(middle, off) + (next - middle).normalize() * along;
+                    for h in [0.0f32, 0.2, 0.7, 0.99, 1.2] {
+                        let one = family.beside_edge(
+                            edge,
+                            p.x,
+                            p.y,
+                            h * h,
+                            right * std::f32::consts::TAU,
+                        );
+                        let all = family.at_polygon(&edges, p, h);
+                        assert!((one - all).abs() < 1e-5, "{p} {h}: {one}, not {all}");
+                    }
+                }
+            }
         }
     }
 

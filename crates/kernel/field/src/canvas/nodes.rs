@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use glam::{Affine3A, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Family, T, half_space, power};
+use super::kernel::{Edge, Family, T, half_space, power};
 use super::paint::{Area, Inked, Segment};
 use super::stroke::HARD;
 use crate::shape::{NODES, Points};
@@ -134,6 +134,7 @@ wide!(pub(super) away, away_avx2, away_any, (bounds: &Aabb, rim: f32, p: &Points
 wide!(pub(super) beside, beside_avx2, beside_any, (weight: f32, inverse: f32, phi: &[f32; NODES], out: &mut [f32; NODES]));
 wide!(pub(super) raise, raise_avx2, raise_any, (out: &mut [f32; NODES], p: f32));
 wide!(pub(super) polygon, polygon_avx2, polygon_any, (family: &Family, area: &Area, weight: f32, p: &Points, out: &mut [f32; NODES]));
+wide!(pub(super) edge, edge_avx2, edge_any, (family: &Family, area: &Area, only: &Edge, right: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
 wide!(pub(super) line, line_avx2, line_any, (family: &Family, from: Vec3, along: Vec3, length: f32, inverse: f32, weight: f32, p: &Points, out: &mut [f32; NODES]));
 
 #[inline(always)]
@@ -211,6 +212,28 @@ fn line_any(
     for (i, o) in out.iter_mut().enumerate() {
         let (d2, s0) = axis(from, along, inverse, p.x[i], p.y[i], p.z[i]);
         *o = weight * family.at_line(d2, s0, s0 + length * inverse);
+    }
+}
+
+/// A polygon of which one edge alone is felt.
+#[inline(always)]
+fn edge_any(
+    family: &Family,
+    area: &Area,
+    only: &Edge,
+    right: f32,
+    weight: f32,
+    p: &Points,
+    out: &mut [f32; NODES],
+) {
+    let [x, y, z] = area.axes.map(|a| a * area.inverse);
+    let o = area.axes.map(|a| a.dot(area.origin) * area.inverse);
+    for (i, out) in out.iter_mut().enumerate() {
+        let (px, py, pz) = (p.x[i], p.y[i], p.z[i]);
+        let u = px * x.x + py * x.y + pz * x.z - o[0];
+        let v = px * y.x + py * y.y + pz * y.z - o[1];
+        let h = px * z.x + py * z.y + pz * z.z - o[2];
+        *out = weight * family.beside_edge(only, u, v, h * h, right);
     }
 }
 

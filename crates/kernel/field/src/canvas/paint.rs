@@ -1,10 +1,10 @@
 use glam::{Affine3A, IVec3, Vec2, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Edge, Family, T, clearance, half_space};
+use super::kernel::{Edge, Family, T, clearance, half_space, turns};
 use super::nodes::{
-    Layers, away, axis, beside, blended, erase_from, erased, join, join_inner, level, line, moved,
-    nearest, polygon, profile, raise,
+    Layers, away, axis, beside, blended, edge, erase_from, erased, join, join_inner, level, line,
+    moved, nearest, polygon, profile, raise,
 };
 use super::stroke::HARD;
 use crate::Program;
@@ -321,11 +321,11 @@ impl Painting {
             Inking::Polygon(area) => {
                 let (flat, height) = area.flat(points.centre);
                 let radius = points.radius * area.inverse;
-                let edge = clearance(&area.corners, flat);
-                if height.abs() - radius > 1.0 || edge + radius < -1.0 {
+                let clear = clearance(&area.corners, flat);
+                if height.abs() - radius > 1.0 || clear + radius < -1.0 {
                     return false;
                 }
-                if edge - radius > 1.0 {
+                if clear - radius > 1.0 {
                     // No edge is felt: it is a plane without end.
                     let [nx, ny, nz] = (area.axes[2] * area.inverse).to_array();
                     let from = area.origin.dot(area.axes[2]) * area.inverse;
@@ -335,7 +335,12 @@ impl Painting {
                     }
                     return true;
                 }
-                polygon(&self.family, area, stroke.weight, points, out);
+                match area.only_edge(flat, radius) {
+                    Some((only, right)) => {
+                        edge(&self.family, area, only, right, stroke.weight, points, out)
+                    }
+                    None => polygon(&self.family, area, stroke.weight, points, out),
+                }
                 true
             }
             Inking::Field(program, radius) => {
@@ -465,6 +470,25 @@ impl Area {
     pub(super) fn at(&self, family: &Family, p: Vec3) -> f32 {
         let (flat, height) = self.flat(p);
         family.at_polygon(&self.edges, flat, height)
+    }
+
+    /// The edge that alone is felt, and neither of its ends, around a place of its plane, with the angle
+    /// of the turns that the polygon makes right of it; all in supports.
+    fn only_edge(&self, flat: Vec2, radius: f32) -> Option<(&Edge, f32)> {
+        let reach = 1.001 * (1.0 + radius);
+        let mut near = self.edges.iter().filter(|e| e.distance(flat) < reach);
+        let only = near.next()?;
+        if near.next().is_some() {
+            return None;
+        }
+        // Where it is nearly passed, a place beside it, still far from all other edges.
+        let left = only.left(flat.x, flat.y);
+        let right = match left {
+            0.5.. => turns(&self.corners, flat) - 1,
+            ..-0.5 => turns(&self.corners, flat),
+            _ => turns(&self.corners, only.beside(flat, -0.5)),
+        };
+        Some((only, std::f32::consts::TAU * right as f32))
     }
 
     /// A place in the polygon's plane and above it, in supports.
