@@ -250,6 +250,14 @@ fn painted(n: u32) -> Recipe {
         strokes: vec![
             Stroke::new(Skeleton::Polygon(corners.into()), 0.04),
             Stroke::new(Skeleton::Points((0..=n).map(point).collect()), 0.05),
+            Stroke {
+                twin: 1,
+                ..Stroke::new(Skeleton::Volume(bitten(0.2)), 0.03)
+            },
+            Stroke {
+                twin: 1,
+                ..Stroke::new(Skeleton::Volume(bitten(0.24)), 0.03)
+            },
             Stroke::new(
                 Skeleton::Line(Vec3::new(0.0, -0.1, 0.0), Vec3::Y * 0.2),
                 0.03,

@@ -80,7 +80,7 @@ pub fn report_on_card(
                 return Err(ReportError::Workload(work.name.clone(), error));
             }
         };
-        let figure = figure(&measured, gpu, budget.runs);
+        let figure = figure(&measured, gpu);
         writeln!(out, "{}", table.row(&figure))?;
         out.flush()?;
         figures.push(figure);
@@ -88,7 +88,7 @@ pub fn report_on_card(
     Ok(figures)
 }
 
-fn figure(f: &Figures, gpu: &Gpu, runs: usize) -> Figure {
+fn figure(f: &Figures, gpu: &Gpu) -> Figure {
     let mut details = Details::new();
     if let Some([cull, fuse, extract]) = f.device_ms {
         details.insert("cull_ms".into(), json!(cull));
@@ -112,7 +112,7 @@ fn figure(f: &Figures, gpu: &Gpu, runs: usize) -> Figure {
         median: f.total_ms,
         min: f.range_ms[0],
         max: f.range_ms[1],
-        runs,
+        runs: f.runs,
         paper: same.flatten(),
         details,
     }

@@ -69,6 +69,8 @@ pub struct Figures {
     pub total_ms: f64,
     /// The shortest and the longest run of it.
     pub range_ms: [f64; 2],
+    /// How many runs these are of.
+    pub runs: usize,
     /// The device's own clock: culling, fusing, extracting; of a brush voxels, smoothing, extracting. `None` where it has none.
     pub device_ms: Option<[f64; 3]>,
     /// The mesh copied to main memory.
@@ -92,6 +94,9 @@ const TASKS: [(&str, &str); 3] = [
     ("chair", include_str!("../../../benches/chair.ron")),
     ("cup", include_str!("../../../benches/cup.ron")),
 ];
+
+/// What takes longer than this is not run again, however many runs are asked for.
+const PATIENCE: Duration = Duration::from_secs(15);
 
 /// The steps of EasyVRModeling Table 1, metres.
 const STEPS: [f32; 4] = [0.012, 0.010, 0.008, 0.006];
@@ -293,7 +298,11 @@ impl Work {
         let (mut total, mut read, mut parts, mut processor) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut last = None;
+        let begun = Instant::now();
         for run in 0..=runs {
+            if run > 1 && begun.elapsed() > PATIENCE {
+                break;
+            }
             let solid = GpuSolid::from_mesh(gpu, &mesh, step).map_err(said)?;
             let started = Instant::now();
             solid.mesh().map_err(said)?;
@@ -331,6 +340,7 @@ impl Work {
                 total.iter().copied().fold(f64::INFINITY, f64::min),
                 total.iter().copied().fold(0.0, f64::max),
             ],
+            runs: total.len(),
             total_ms: median(total),
             device_ms: gpu.is_timed().then(|| [device(0), device(1), device(2)]),
             read_ms: median(read),
@@ -341,7 +351,7 @@ impl Work {
         }
     }
 
-    /// Times it so often after a first run that only warms up; the median counts.
+    /// Times it so often after a first run that only warms up, less often what takes very long; the median counts.
     ///
     /// # Errors
     /// What the device refuses, in one line.
@@ -359,7 +369,11 @@ impl Work {
         let mut solid =
             GpuSolid::make_with(gpu, before.as_ref().unwrap_or(&program), options).map_err(said)?;
         let (mut total, mut read, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+        let begun = Instant::now();
         for run in 0..=runs {
+            if run > 1 && begun.elapsed() > PATIENCE {
+                break;
+            }
             match &before {
                 Some(before) => {
                     if run > 0 {
@@ -379,7 +393,7 @@ impl Work {
                 parts.push(device.map(|p| p.map_or(f64::NAN, ms)));
             }
         }
-        let processor = on_processor(before.as_ref(), &program, runs)?;
+        let processor = on_processor(before.as_ref(), &program, total.len())?;
         Ok(self.figures(gpu, &solid, total, read, &parts, processor))
     }
 }

@@ -73,6 +73,8 @@ pub struct GpuSolid {
 
 /// An edit over more chunks than this is a making.
 const MOST_CHUNKS: i64 = 4096;
+/// An edit of more than this share of the box is a making.
+const MUCH: f64 = 0.5;
 /// Steps around a crossing where values are there, as the processor has it.
 const AROUND: f32 = 2.0;
 /// Of 16-bit values, and what is too near to zero to be told from it; in steps.
@@ -156,9 +158,7 @@ impl GpuSolid {
             && flat.volume_bytes() / 4 <= self.room.volumes.into()
             && (!self.room.quantised || self.options.quantises(program.step(), flat.flattest));
         // Most of it anew is sooner made whole, and leaves nothing of what was there before.
-        let volume = |b: &Aabb| f64::from(b.size().element_product());
-        let much = volume(&dirty) > 0.5 * volume(&program.bounds());
-        if much
+        if share(&dirty, program) > MUCH
             || chunks > MOST_CHUNKS.min(self.room.blocks.into())
             || !fits
             || self.globals.top < 3
@@ -173,6 +173,24 @@ impl GpuSolid {
         }
         // Something ran out: made whole with more room.
         self.remake(program, &flat)
+    }
+
+    /// Whether an update would leave most of it as it is.
+    pub fn is_near(&self, program: &Program) -> bool {
+        let before = self.program.as_ref();
+        before
+            .filter(|before| before.step() == program.step())
+            .is_some_and(|before| share(&changed_box(before, program), program) <= MUCH)
+    }
+
+    /// Bricks whose surface the last making or update made.
+    pub fn renewed(&self) -> u32 {
+        let counted = if self.globals.update == 1 {
+            counter::WORK
+        } else {
+            counter::SLOTS
+        };
+        self.counters[counted]
     }
 
     /// Makes it whole on the buffers it has.
@@ -598,6 +616,16 @@ pub(crate) fn extract(p: &mut crate::passes::Passes, k: &Kernels, room: &Room, u
     let groups = p.find(&k.args, counted, room.slots, 1, 1);
     for kernel in [&k.classify, &k.count, &k.emit] {
         p.run(kernel, Stage::default(), groups, &[]);
+    }
+}
+
+/// How much of a program's box another is.
+fn share(dirty: &Aabb, program: &Program) -> f64 {
+    let volume = |b: &Aabb| f64::from(b.size().element_product());
+    if dirty.is_empty() {
+        0.0
+    } else {
+        volume(dirty) / volume(&program.bounds())
     }
 }
 

@@ -9,6 +9,7 @@ use midair_field::{MeshSource, Placement, Program, Recipe};
 use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions, can_make};
 use midair_mesh::TriMesh;
 
+use super::kept::Kept;
 pub use crate::settings::Backend as Choice;
 use crate::show::is_software;
 
@@ -29,8 +30,11 @@ struct Inner {
     untold: Mutex<Vec<String>>,
     /// Held by whoever opens the card while others wait for it.
     opening: Mutex<()>,
-    /// The solid that was made last, whose buffers the next one takes over.
-    last: Mutex<Option<GpuSolid>>,
+    /// Solids that are still there; held while one is made.
+    kept: Mutex<Kept>,
+    /// A test of a card that cannot be opened.
+    #[cfg(test)]
+    broken: Mutex<Option<GpuError>>,
     /// Bytes that a solid may have on the card at most.
     budget: AtomicU64,
     /// How many solids the card made.
@@ -94,7 +98,9 @@ impl Backend {
             drawing: Mutex::default(),
             untold: Mutex::default(),
             opening: Mutex::default(),
-            last: Mutex::default(),
+            kept: Mutex::default(),
+            #[cfg(test)]
+            broken: Mutex::default(),
             budget: AtomicU64::new(GpuOptions::default().budget),
             made: AtomicUsize::new(0),
             told_of_size: AtomicBool::new(false),
@@ -144,6 +150,10 @@ impl Backend {
 
     /// Opens the card that draws, or, where nothing is drawn or that one will not do, one of its own.
     fn open(&self, options: &GpuOptions) -> Result<Gpu, GpuError> {
+        #[cfg(test)]
+        if let Some(error) = self.0.broken.lock().ok().and_then(|b| b.clone()) {
+            return Err(error);
+        }
         let drawing = self
             .0
             .drawing
@@ -276,7 +286,14 @@ impl Backend {
         let Ok(program) = Program::compile(recipe, &Placement::IDENTITY, step, meshes) else {
             return Asked::Processor;
         };
-        match self.on_card(&gpu, &program, early) {
+        let mut made = self.on_card(&gpu, &program, early);
+        // What others have there gives way before the processor is asked.
+        if let Err(GpuError::OutOfMemory { .. } | GpuError::Full) = made
+            && self.forget()
+        {
+            made = self.on_card(&gpu, &program, early);
+        }
+        match made {
             Ok(made) => {
                 self.succeeded();
                 Asked::Made(made)
@@ -371,14 +388,14 @@ impl Backend {
         program: &Program,
         early: &dyn Fn(Emitted),
     ) -> Result<OnCard, GpuError> {
-        let mut last = self.0.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.0.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let started = Instant::now();
-        let solid = match last.take() {
-            Some(mut solid) if solid.is_on(gpu) => {
+        let solid = match kept.take(gpu, program) {
+            Some(mut solid) => {
                 solid.update(program)?;
                 solid
             }
-            _ => GpuSolid::make_with(gpu, program, KEPT)?,
+            None => GpuSolid::make_with(gpu, program, KEPT)?,
         };
         let made = started.elapsed();
         let emitted = solid.emit()?;
@@ -387,7 +404,7 @@ impl Backend {
         }
         let mesh = emitted.mesh()?;
         let timing = solid.timing();
-        *last = Some(solid);
+        kept.keep(solid, gpu.budget());
         // Without a clock on the device all of it counts as fusing, all of the way back as extracting.
         let fuse = timing.cull.zip(timing.fuse).map_or(made, |(a, b)| a + b);
         Ok(OnCard {
@@ -397,8 +414,10 @@ impl Backend {
         })
     }
 
-    fn forget(&self) {
-        *self.0.last.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    /// Gives up what is on the card; whether there was anything.
+    fn forget(&self) -> bool {
+        let mut kept = self.0.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.clear()
     }
 
     /// Loses the card on purpose, as a test of what then happens.
@@ -419,94 +438,4 @@ fn capital(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use midair_field::Primitive;
-
-    fn ball(radius: f32) -> Recipe {
-        Primitive::Sphere { radius }.into()
-    }
-
-    fn made(asked: Asked) -> Option<OnCard> {
-        match asked {
-            Asked::Made(made) => Some(made),
-            Asked::Processor => None,
-        }
-    }
-
-    #[test]
-    fn the_processor_is_asked_where_it_was_chosen() {
-        let backend = Backend::forced(Choice::Processor);
-        assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor
-        ));
-        backend.follow(Choice::Card);
-        assert_eq!(backend.says(), "The processor makes solids.");
-    }
-
-    #[test]
-    fn nobody_waits_for_a_card_that_is_optional() {
-        let backend = Backend::following(Choice::Auto);
-        assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor
-        ));
-    }
-
-    #[test]
-    fn a_lost_card_is_told_once_and_the_processor_goes_on() {
-        let backend = Backend::forced(Choice::Card);
-        let Some(first) = made(backend.make(&ball(0.1), 0.01, &(), &|_| ())) else {
-            // No adapter, not even software: said, and left to the processor.
-            assert!(backend.says().contains("processor"), "{}", backend.says());
-            eprintln!("skipped: {}", backend.says());
-            return;
-        };
-        let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
-        assert!((first.mesh.volume() / exact - 1.0).abs() < 0.02);
-        // The next takes over its buffers.
-        let second = made(backend.make(&ball(0.12), 0.01, &(), &|_| ())).unwrap();
-        assert!(second.mesh.volume() > 1.5 * first.mesh.volume());
-        backend.lose();
-        assert!(made(backend.make(&ball(0.1), 0.01, &(), &|_| ())).is_none());
-        let [line] = &backend.untold()[..] else {
-            panic!("it is told once");
-        };
-        assert!(
-            line.contains("lost") && line.contains("processor"),
-            "{line}"
-        );
-        assert!(matches!(
-            backend.make(&ball(0.1), 0.01, &(), &|_| ()),
-            Asked::Processor
-        ));
-        assert!(backend.untold().is_empty());
-        assert!(backend.says().contains("lost"), "{}", backend.says());
-    }
-
-    /// A sketch that finds no memory is the processor's, and so is what is made of it; the card is asked again.
-    #[test]
-    fn a_sketch_that_finds_no_memory_is_told_once() {
-        let backend = Backend::forced(Choice::Card);
-        let Some((solid, _)) = backend.sketch(&ball(0.1), 0.01, &(), None) else {
-            eprintln!("skipped: {}", backend.says());
-            return;
-        };
-        let card = backend.in_use().unwrap();
-        card.starve(Some(1024));
-        assert!(backend.sketch(&ball(0.2), 0.01, &(), Some(solid)).is_none());
-        assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_none());
-        let [line] = &backend.untold()[..] else {
-            panic!("it is told once");
-        };
-        assert!(
-            line.contains("left") && line.contains("processor"),
-            "{line}"
-        );
-        card.starve(None);
-        assert!(backend.sketch(&ball(0.2), 0.01, &(), None).is_some());
-        assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_some());
-        assert!(backend.untold().is_empty());
-    }
-}
+mod tests;

@@ -7,6 +7,7 @@
 mod backend;
 mod delivery;
 mod job;
+mod kept;
 mod live;
 mod memory;
 
