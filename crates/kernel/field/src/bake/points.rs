@@ -2,7 +2,7 @@
 
 use glam::UVec3;
 
-use super::eight::{Found, offsets};
+use super::eight::{Found, dot, offsets};
 use super::frame::SIDE;
 use super::lanes::{EIGHT, F8, Simd, U8};
 use super::triangle::Triangle;
@@ -15,11 +15,10 @@ pub(super) const FAR_SQUARE: f32 = 3.0 * FAR * FAR;
 /// What is hardly closer is not taken over.
 const WORTH_TAKING: f32 = 0.998;
 
-/// For each node of a block: the offset from the closest known point of a triangle, its square, and
-/// the triangle; in steps.
+/// For each node of a block: the offset from the closest known point of a triangle, steps, and the
+/// triangle.
 #[derive(Clone)]
 pub(super) struct Points {
-    pub square: [f32; BLOCK],
     pub x: [f32; BLOCK],
     pub y: [f32; BLOCK],
     pub z: [f32; BLOCK],
@@ -81,7 +80,7 @@ impl<S: Simd> Row<S> {
     pub fn take<const AXIS: usize>(&mut self, s: S, from: &Self, step: f32) -> bool {
         let mut by = from.by;
         by[AXIS] = by[AXIS] + F8::splat(s, step);
-        let square = by[0] * by[0] + by[1] * by[1] + by[2] * by[2];
+        let square = dot(by, by);
         let closer = square.less(self.square * F8::splat(s, WORTH_TAKING));
         if closer.bits() == 0 {
             return false;
@@ -97,7 +96,6 @@ impl<S: Simd> Row<S> {
 
 impl Points {
     pub const UNKNOWN: Self = Self {
-        square: [FAR_SQUARE; BLOCK],
         x: [FAR; BLOCK],
         y: [FAR; BLOCK],
         z: [FAR; BLOCK],
@@ -106,20 +104,21 @@ impl Points {
 
     #[inline(always)]
     pub fn row<S: Simd>(&self, s: S, at: usize) -> Row<S> {
+        let by = [
+            F8::load(s, &self.x, at),
+            F8::load(s, &self.y, at),
+            F8::load(s, &self.z, at),
+        ];
         Row {
-            square: F8::load(s, &self.square, at),
-            by: [
-                F8::load(s, &self.x, at),
-                F8::load(s, &self.y, at),
-                F8::load(s, &self.z, at),
-            ],
+            // Sooner had again than kept: what moves through memory is what takes time.
+            square: dot(by, by),
+            by,
             triangle: U8::load(s, &self.triangle, at),
         }
     }
 
     #[inline(always)]
     pub fn put<S: Simd>(&mut self, at: usize, row: &Row<S>) {
-        row.square.store(&mut self.square, at);
         row.by[0].store(&mut self.x, at);
         row.by[1].store(&mut self.y, at);
         row.by[2].store(&mut self.z, at);

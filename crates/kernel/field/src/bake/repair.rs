@@ -33,9 +33,11 @@ pub(super) struct EdgeUse {
 pub(super) fn close(mesh: &TriMesh, lid: f32, progress: &Progress) -> Result<Closed, BakeError> {
     let (positions, mut faces) = weld(mesh)?;
     progress.check()?;
-    let whole = paired(&faces, positions.len());
-    if let Some(pieces) = whole.filter(|_| volume(&positions, &faces) > 0.0) {
-        let mut closed = without_lids(&positions, &faces);
+    let (whole, (size, mut closed)) = rayon::join(
+        || paired(&faces, positions.len()),
+        || (volume(&positions, &faces), without_lids(&positions, &faces)),
+    );
+    if let Some(pieces) = whole.filter(|_| size > 0.0) {
         let inverted = inverted_pieces(&positions, &faces, &pieces, &[], &closed);
         if !inverted.is_empty() {
             turn(&mut faces, &pieces, &inverted);
@@ -48,7 +50,7 @@ pub(super) fn close(mesh: &TriMesh, lid: f32, progress: &Progress) -> Result<Clo
     let pieces = orient(&positions, &mut faces, &edges);
     let edges = edge_uses(&faces);
     progress.check()?;
-    let mut closed = with_lids(&positions, &faces, &edges, lid, progress)?;
+    closed = with_lids(&positions, &faces, &edges, lid, progress)?;
     let inverted = inverted_pieces(&positions, &faces, &pieces, &edges, &closed);
     if !inverted.is_empty() {
         turn(&mut faces, &pieces, &inverted);

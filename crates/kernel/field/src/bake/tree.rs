@@ -20,6 +20,8 @@ const BETA: f32 = 2.0;
 pub(super) struct Tree<'a> {
     triangles: &'a [Triangle],
     order: Vec<u32>,
+    /// By leaf, the boxes of its triangles.
+    own: Vec<Boxes>,
     /// By level, leaves first: the boxes of eight at a time.
     boxes: Vec<Vec<Boxes>>,
     moments: OnceLock<Moments>,
@@ -73,14 +75,25 @@ impl<'a> Tree<'a> {
         keyed.par_sort_unstable();
         let order: Vec<u32> = keyed.into_iter().map(|(_, i)| i).collect();
 
-        let leaf = |l: &[u32]| {
-            let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-            for p in l.iter().flat_map(|t| &triangles[*t as usize].v) {
-                (min, max) = (min.min(*p), max.max(*p));
+        let of_one = |t: &u32| {
+            let [a, b, c] = triangles[*t as usize].v;
+            Aabb {
+                min: a.min(b).min(c),
+                max: a.max(b).max(c),
             }
-            Aabb { min, max }
         };
-        let mut bounds: Vec<Aabb> = order.par_chunks(LEAF).with_min_len(64).map(leaf).collect();
+        let leaf = |l: &[u32]| {
+            let mut all = [Aabb::EMPTY; LEAF];
+            let mut whole = Aabb::EMPTY;
+            for (own, t) in all.iter_mut().zip(l) {
+                *own = of_one(t);
+                whole.min = whole.min.min(own.min);
+                whole.max = whole.max.max(own.max);
+            }
+            (Boxes::new(&all[..l.len()]), whole)
+        };
+        let (own, mut bounds): (Vec<Boxes>, Vec<Aabb>) =
+            order.par_chunks(LEAF).with_min_len(64).map(leaf).unzip();
         let mut boxes = Vec::new();
         loop {
             boxes.push(bounds.chunks(EIGHT).map(Boxes::new).collect::<Vec<_>>());
@@ -93,6 +106,7 @@ impl<'a> Tree<'a> {
         Self {
             triangles,
             order,
+            own,
             boxes,
             moments: OnceLock::new(),
         }
@@ -269,7 +283,17 @@ fn search_any<S: Simd>(s: S, tree: &Tree, p: Vec3, best: &mut (f32, u32)) {
         if near > best.0 {
             continue;
         }
+        // Those that are missing are infinitely far.
+        let most = F8::splat(s, best.0.min(f32::MAX) * (1.0 + f32::EPSILON));
         if level == 0 {
+            if tree.own[node as usize]
+                .squares(s, &places)
+                .less(most)
+                .bits()
+                == 0
+            {
+                continue;
+            }
             let leaf = tree.leaf(node as usize);
             let ids = std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)]);
             let squares = offsets(s, tree.triangles, &ids, places).square;
@@ -282,8 +306,6 @@ fn search_any<S: Simd>(s: S, tree: &Tree, p: Vec3, best: &mut (f32, u32)) {
         }
         let group = &tree.boxes[level as usize - 1][node as usize];
         let squares = group.squares(s, &places);
-        // Those that are missing are infinitely far.
-        let most = F8::splat(s, best.0.min(f32::MAX) * (1.0 + f32::EPSILON));
         let mut open = squares.less(most).bits();
         let squares = squares.lanes();
         let begin = top;

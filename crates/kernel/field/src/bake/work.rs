@@ -81,20 +81,24 @@ fn measure(
     may_cross: bool,
     progress: &Progress,
 ) -> Result<Volume, BakeError> {
-    let mut band = Band::around(frame, surface, progress)?;
-    let bars = Bars::new(band.size, surface, progress)?;
-    let signs = if std::ptr::eq(surface, whole) {
-        Signs::new(&band, &bars, progress)?
-    } else {
-        Signs::new(&band, &Bars::new(band.size, whole, progress)?, progress)?
+    let plan = || {
+        let band = Band::around(frame, surface, progress)?;
+        let bars = Bars::new(band.size, surface, progress)?;
+        let signs = if std::ptr::eq(surface, whole) {
+            Signs::new(&band, &bars, progress)?
+        } else {
+            Signs::new(&band, &Bars::new(band.size, whole, progress)?, progress)?
+        };
+        Ok((band, bars, signs))
     };
+    let (plan, tree) = rayon::join(plan, || Tree::new(surface));
+    let (mut band, bars, signs) = plan?;
     if !signs.simple && may_cross {
         let kept = boundary::bounding(surface, 0, &Tree::new(whole), progress)?;
         if !kept.is_empty() {
             return measure(frame, solid, &kept, whole, false, progress);
         }
     }
-    let tree = Tree::new(surface);
     band.measure(&bars, progress)?;
     let corners = far_corners(&band, &signs, &tree, progress)?;
     progress.set_fraction(0.85);
