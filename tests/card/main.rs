@@ -23,28 +23,24 @@ const SIZE: UVec2 = UVec2::new(480, 320);
 #[derive(Resource, Default)]
 struct Taken(Option<Image>);
 
-/// A box from which a ball of so large a radius is taken.
-fn bitten(radius: f32) -> Recipe {
-    let part = |op, at: Vec3, p: Primitive| Operand {
+/// A hollow ball of so large a radius beside a box: several operands and nothing sharp, which the processor would
+/// put in afterwards.
+fn beside(radius: f32) -> Recipe {
+    let part = |op, x: f32, p: Primitive| Operand {
         op,
-        placement: Placement::at(at),
+        placement: Placement::at(Vec3::X * x),
         recipe: p.into(),
         muted: false,
     };
+    let cuboid = Primitive::Cuboid {
+        half: Vec3::splat(0.12),
+        rounding: 0.05,
+    };
+    let ball = |radius| Primitive::Sphere { radius };
     Recipe::new(Node::Solid(vec![
-        part(
-            Op::Union,
-            Vec3::ZERO,
-            Primitive::Cuboid {
-                half: Vec3::splat(0.2),
-                rounding: 0.02,
-            },
-        ),
-        part(
-            Op::Subtract,
-            Vec3::new(0.15, 0.15, 0.2),
-            Primitive::Sphere { radius },
-        ),
+        part(Op::Union, -0.35, cuboid),
+        part(Op::Union, 0.1, ball(radius)),
+        part(Op::Subtract, 0.1, ball(0.1)),
     ]))
 }
 
@@ -66,7 +62,7 @@ struct Drawn {
 
 impl Drawn {
     fn by(choice: Choice) -> Option<Self> {
-        Self::of(choice, bitten(0.2), |_| {})
+        Self::of(choice, beside(0.2), |_| {})
     }
 
     fn of(choice: Choice, first: Recipe, prepare: impl FnOnce(&mut App)) -> Option<Self> {
@@ -109,7 +105,7 @@ impl Drawn {
     }
 
     fn change(&mut self, radius: f32) {
-        self.become_of(bitten(radius));
+        self.become_of(beside(radius));
     }
 
     fn become_of(&mut self, recipe: Recipe) {
@@ -182,9 +178,9 @@ fn what_the_card_makes_is_drawn_before_main_memory_has_it() {
         says.contains("makes solids") && says.contains("MiB") && !says.contains("processor"),
         "{says}"
     );
-    let bitten_once = processor.picture();
+    let at_first = processor.picture();
     assert!(
-        different(&card.picture(), &bitten_once) < 0.002,
+        different(&card.picture(), &at_first) < 0.002,
         "as made first"
     );
     // The first change comes through main memory, into a mesh with room to spare.
@@ -214,7 +210,7 @@ fn what_the_card_makes_is_drawn_before_main_memory_has_it() {
     processor.settle();
     let expected = processor.picture();
     assert!(
-        different(&bitten_once, &expected) > 0.01,
+        different(&at_first, &expected) > 0.01,
         "the change can be seen"
     );
     let off = different(&card.picture(), &expected);
@@ -350,12 +346,12 @@ fn a_live_preview_stays_on_the_card() {
     };
     let (mut live, mut entity, mut step) = (Live::default(), None, 0.0);
     for radius in [0.2, 0.22, 0.24, 0.26] {
-        step = sketch(&mut card, &mut live, &mut entity, &bitten(radius), 0.01);
+        step = sketch(&mut card, &mut live, &mut entity, &beside(radius), 0.01);
     }
     assert!(card.written() > 0, "some were drawn where they lie");
     // The first of all is twice as coarse as at rest: the same step, however quick the card was.
     let (mut live, mut entity) = (Live::default(), None);
-    let last = bitten(0.26);
+    let last = beside(0.26);
     let same = sketch(&mut processor, &mut live, &mut entity, &last, 0.5 * step);
     assert_eq!(same, step);
     let off = different(&card.picture(), &processor.picture());

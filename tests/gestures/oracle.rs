@@ -119,7 +119,11 @@ fn exported_volumes_come_to_those_of_an_exact_boolean() {
         for (holds, what) in [
             (coarse < 0.015, format!("off by {coarse} at 0.010")),
             (fine < 0.0015, format!("off by {fine} at 0.0025")),
-            (slope > 1.8, format!("the error falls as step^{slope}")),
+            // What is sharp is there at any step: where little else is, nothing is left to fall.
+            (
+                slope > 1.8 || fine < 1e-4,
+                format!("the error falls as step^{slope}"),
+            ),
         ] {
             if !holds {
                 missed.push(format!("{name}: {what}"));

@@ -83,7 +83,7 @@ fn a_muted_operand_is_kept_and_left_out() {
         let at = s.placement(id);
         midair_solid::Solid::make(&alone, &at, 0.02, &**volumes, &go)
             .unwrap()
-            .mesh()
+            .crisp()
     };
     assert_eq!(s.mesh(id, 0.02), by_hand);
     // The base muted, the next one is what stands there, whatever its sign.

@@ -348,7 +348,7 @@ impl Studio {
         let go = std::sync::atomic::AtomicBool::new(false);
         Solid::make(recipe, &object.placement, step, &**volumes, &go)
             .unwrap()
-            .mesh()
+            .crisp()
     }
 
     /// The same, which has no fault.

@@ -24,7 +24,7 @@ use midair_field::{
     refuse_from,
 };
 use midair_mesh::TriMesh;
-use midair_surface::{Cancelled, Surface};
+use midair_surface::{Cancelled, Surface, crisp};
 
 mod export;
 mod material;
@@ -149,9 +149,14 @@ impl Solid {
         &self.surface
     }
 
-    /// The whole surface, closed and welded.
+    /// The whole surface, closed and welded, as marching cubes leaves it.
     pub fn mesh(&self) -> TriMesh {
         self.surface.mesh()
+    }
+
+    /// The whole surface, closed and welded, with its sharp edges.
+    pub fn crisp(&self) -> TriMesh {
+        crisp(self.mesh(), &self.program)
     }
 }
 

@@ -69,7 +69,7 @@ pub fn surface_of(
             }
             Ok(all)
         }
-        _ => Ok(Solid::make(recipe, placement, step, meshes, cancel)?.mesh()),
+        _ => Ok(Solid::make(recipe, placement, step, meshes, cancel)?.crisp()),
     }
 }
 

@@ -192,7 +192,7 @@ impl Program {
     }
 
     /// How far bounds may be off by rounding.
-    fn rounding(&self) -> f32 {
+    pub(crate) fn rounding(&self) -> f32 {
         let b = self.bounds();
         1.0e-3 * self.step() + 4.0e-6 * b.min.abs().max(b.max.abs()).max_element()
     }

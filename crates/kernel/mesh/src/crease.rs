@@ -78,9 +78,94 @@ impl TriMesh {
     }
 }
 
+/// The cosine of the angle between the normals of one side at one vertex, at most: 25°.
+const ONE_SIDE: f32 = 0.906;
+
+impl TriMesh {
+    /// The same surface for drawing: each vertex from number `first` on lies on a sharp edge, and becomes one vertex for
+    /// each side that meets there, with the normal that the other corners of its triangles have. What comes out is not
+    /// closed, as with [`TriMesh::creased`].
+    #[must_use]
+    pub fn parted(&self, first: usize) -> Self {
+        let mut out = self.clone();
+        // Of each such vertex, the normals it has and the vertices that have them.
+        let mut sides: Vec<Vec<(Vec3, u32)>> =
+            vec![Vec::new(); self.positions.len().saturating_sub(first)];
+        for (t, corners) in self.triangles.iter().enumerate() {
+            if corners.iter().all(|&v| (v as usize) < first) {
+                continue;
+            }
+            let beside = corners.iter().filter(|&&v| (v as usize) < first);
+            let sum: Vec3 = beside.map(|&v| self.normals[v as usize]).sum();
+            let [a, b, c] = self.corners(t);
+            let normal = sum
+                .try_normalize()
+                .or_else(|| (b - a).cross(c - a).try_normalize())
+                .unwrap_or(Vec3::Y);
+            for (k, &v) in corners.iter().enumerate() {
+                let Some(known) = (v as usize)
+                    .checked_sub(first)
+                    .and_then(|i| sides.get_mut(i))
+                else {
+                    continue;
+                };
+                let same = known.iter().find(|(n, _)| n.dot(normal) > ONE_SIDE);
+                let own = same.map(|&(_, own)| own).unwrap_or_else(|| {
+                    let own = if known.is_empty() {
+                        out.normals[v as usize] = normal;
+                        v
+                    } else {
+                        out.positions.push(self.positions[v as usize]);
+                        out.normals.push(normal);
+                        out.positions.len() as u32 - 1
+                    };
+                    known.push((normal, own));
+                    own
+                });
+                out.triangles[t][k] = own;
+            }
+        }
+        out
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_ridge_is_parted_into_its_two_sides() {
+        // A roof: four vertices of its eaves, two of its ridge.
+        let roof = TriMesh {
+            positions: [
+                [-1.0, 0.0, 0.0],
+                [-1.0, 0.0, 1.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 0.0, 1.0],
+                [0.0, 1.0, 0.0],
+                [0.0, 1.0, 1.0],
+            ]
+            .map(Vec3::from_array)
+            .to_vec(),
+            normals: [[-1.0, 1.0, 0.0]; 2]
+                .into_iter()
+                .chain([[1.0, 1.0, 0.0]; 2])
+                .chain([[0.0, 1.0, 0.0]; 2])
+                .map(|n| Vec3::from_array(n).normalize())
+                .collect(),
+            triangles: vec![[0, 1, 5], [0, 5, 4], [3, 2, 4], [3, 4, 5]],
+        };
+        let drawn = roof.parted(4);
+        assert_eq!(drawn.positions.len(), 8);
+        for (t, corners) in drawn.triangles.iter().enumerate() {
+            let flat = |&v: &u32| {
+                drawn.normals[v as usize].distance(drawn.normals[corners[0] as usize]) < 1e-6
+            };
+            assert!(corners.iter().all(flat));
+            assert_eq!(drawn.corners(t), roof.corners(t));
+        }
+        assert_eq!(roof.parted(6), roof);
+    }
 
     #[test]
     fn a_box_has_three_normals_at_each_corner_and_a_slab_of_it_one() {

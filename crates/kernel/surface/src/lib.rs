@@ -7,8 +7,10 @@
 //! - `piece`: the vertices and triangles that one brick owns.
 //! - `surface`: pieces kept and updated.
 //! - `weld`: pieces put together, as a whole or by chunk.
+//! - `crisp`: sharp edges, put back.
 //! - `dense`: fields from functions.
 
+mod crisp;
 mod dense;
 mod mask;
 mod piece;
@@ -18,6 +20,7 @@ mod surface;
 mod table;
 mod weld;
 
+pub use crisp::crisp;
 pub use dense::grid_from_fn;
 pub use surface::{Cancelled, Chunk, ChunkKey, Surface};
 pub use table::{MOST_TRIANGLES, cases};

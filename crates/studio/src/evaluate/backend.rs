@@ -8,6 +8,7 @@ use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use midair_field::{MeshSource, Placement, Program, Recipe};
 use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions, can_make};
 use midair_mesh::TriMesh;
+use midair_surface::crisp;
 
 use super::kept::Kept;
 pub use crate::settings::Backend as Choice;
@@ -69,6 +70,8 @@ enum State {
 /// A solid that the card made.
 pub(super) struct OnCard {
     pub mesh: TriMesh,
+    /// How many of its vertices came from the card; those of its edges follow.
+    pub plain: usize,
     pub fuse: Duration,
     pub extract: Duration,
 }
@@ -403,12 +406,15 @@ impl Backend {
             early(emitted.clone());
         }
         let mesh = emitted.mesh()?;
+        let plain = mesh.positions.len();
+        let mesh = crisp(mesh, program);
         let timing = solid.timing();
         kept.keep(solid, gpu.budget());
         // Without a clock on the device all of it counts as fusing, all of the way back as extracting.
         let fuse = timing.cull.zip(timing.fuse).map_or(made, |(a, b)| a + b);
         Ok(OnCard {
             mesh,
+            plain,
             fuse,
             extract: started.elapsed().saturating_sub(fuse),
         })

@@ -1,6 +1,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::Instant;
 
 use bevy::math::bounding::Aabb3d;
 use bevy::prelude::*;
@@ -32,6 +33,8 @@ pub struct Made {
     pub(crate) pieces: std::sync::Mutex<Vec<Mesh>>,
     /// The same, ready to be drawn; taken by the first that draws it.
     pub(crate) drawn: std::sync::Mutex<Option<Mesh>>,
+    /// The first of its vertices that lie on its sharp edges, if it has any.
+    pub(crate) edges: Option<usize>,
     /// The same, ready to be picked; `None` where the solid is empty.
     pub shape: Option<SharedShape>,
     /// Milliseconds to fuse and to extract.
@@ -114,6 +117,31 @@ impl Made {
         made
     }
 
+    /// A solid of which the vertices from number `plain` on are those of its sharp edges.
+    fn from_crisp(mesh: TriMesh, plain: usize) -> Self {
+        let made = Self::from_mesh(Arc::new(mesh));
+        if made.mesh.positions.len() == plain {
+            return made;
+        }
+        let made = Self {
+            edges: Some(plain),
+            ..made
+        };
+        if let Ok(mut drawn) = made.drawn.lock() {
+            *drawn = Some(made.drawing());
+        }
+        made
+    }
+
+    /// It as it is drawn.
+    pub(crate) fn drawing(&self) -> Mesh {
+        let mesh = match self.edges {
+            Some(first) => to_bevy_mesh(&self.mesh.parted(first)),
+            None => to_bevy_mesh(&self.mesh),
+        };
+        boxed(mesh, self.bounds)
+    }
+
     /// From a mesh that needs no evaluation.
     pub fn from_mesh(mesh: Arc<TriMesh>) -> Self {
         // Oriented, so that a hand inside the solid touches it.
@@ -129,6 +157,7 @@ impl Made {
         Self {
             volume: mesh.volume(),
             drawn: std::sync::Mutex::new(Some(drawn)),
+            edges: None,
             shape,
             fuse_ms: 0.0,
             extract_ms: 0.0,
@@ -223,7 +252,7 @@ impl Running {
                     if cancelled.load(Ordering::Relaxed) {
                         return Err(SolidError::Cancelled);
                     }
-                    let mut made = Made::from_mesh(Arc::new(on_card.mesh));
+                    let mut made = Made::from_crisp(on_card.mesh, on_card.plain);
                     made.fuse_ms = on_card.fuse.as_secs_f64() * 1e3;
                     made.extract_ms = on_card.extract.as_secs_f64() * 1e3;
                     return Ok(made);
@@ -233,9 +262,12 @@ impl Running {
                     Some(base) => base.remake(&recipe, &at, step, &meshes, &cancelled),
                     None => Solid::make(&recipe, &at, step, &meshes, &cancelled),
                 }?;
-                let mut made = Made::from_mesh(Arc::new(solid.mesh()));
+                let extracted = Instant::now();
+                let mesh = solid.crisp();
+                let extract = solid.extract + extracted.elapsed();
+                let mut made = Made::from_crisp(mesh, solid.surface().vertices());
                 made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
-                made.extract_ms = solid.extract.as_secs_f64() * 1e3;
+                made.extract_ms = extract.as_secs_f64() * 1e3;
                 if matches!(recipe.node(), Node::Canvas(_)) {
                     // Shared with the states before and after, so most of it counts twice.
                     made.bytes += solid.grid().bricks().count() * 1024;

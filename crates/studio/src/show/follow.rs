@@ -167,7 +167,7 @@ impl Drawn {
         let known = self.0.get(&key).filter(|h| meshes.contains(h.id()));
         known.cloned().unwrap_or_else(|| {
             let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
-            let handle = meshes.add(mesh.unwrap_or_else(|| to_bevy_mesh(&made.mesh)));
+            let handle = meshes.add(mesh.unwrap_or_else(|| made.drawing()));
             self.0.insert(key, handle.clone());
             handle
         })
@@ -382,7 +382,8 @@ fn show(
                         stand(each, &Dress::of(look), entity, id, &mut commands);
                     }
                     None => {
-                        let surface = evaluations.surface(&key);
+                        // Its edges are sharp in main memory alone.
+                        let surface = evaluations.surface(&key).filter(|_| !made.edges.is_some());
                         let with = (&mut *writes, &mut *drawn, &mut *meshes);
                         let mut entity = commands.entity(entity);
                         showing.draw((key, &made), recipe, surface, with, &mut entity);

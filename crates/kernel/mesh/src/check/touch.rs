@@ -26,13 +26,9 @@ pub(super) struct Touching {
 /// Pairs of triangles that have more in common than the corners they share. Triangles that are a
 /// line take no part: they are reported as such.
 pub(super) fn touching(mesh: &TriMesh) -> Touching {
-    let boxes: Vec<Aabb> = mesh
-        .triangles
-        .par_iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-            Aabb::new(a.min(b).min(c), a.max(b).max(c))
-        })
+    let boxes: Vec<Aabb> = (0..mesh.triangles.len())
+        .into_par_iter()
+        .map(|t| bounds(mesh, t))
         .collect();
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let real: Vec<bool> = (0..mesh.triangles.len())
@@ -86,6 +82,37 @@ pub(super) fn touching(mesh: &TriMesh) -> Touching {
     }
     found.pairs.sort_unstable();
     found
+}
+
+impl TriMesh {
+    /// Pairs of triangles, of which at least one is among `some`, that have more in common than the corners they
+    /// share: what [`crate::check`](crate::check()) would count of them. In order, without repeats.
+    ///
+    /// All triangles must name vertices that are there and finite, and `some` triangles.
+    #[must_use]
+    pub fn touching(&self, some: &[u32]) -> Vec<[u32; 2]> {
+        let boxes: Vec<Aabb> = some.iter().map(|&t| bounds(self, t as usize)).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let mut pairs: Vec<[u32; 2]> = (0..self.triangles.len() as u32)
+            .into_par_iter()
+            .flat_map_iter(|i| {
+                let around = BvhNode::leaf(bounds(self, i as usize), 0);
+                tree.leaves(move |node| node.intersects(&around))
+                    .map(|j| some[j as usize])
+                    .filter(move |&j| i != j && touch(self, i as usize, j as usize))
+                    .map(move |j| [i.min(j), i.max(j)])
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        pairs.par_sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+}
+
+fn bounds(mesh: &TriMesh, t: usize) -> Aabb {
+    let [a, b, c] = mesh.corners(t);
+    Aabb::new(a.min(b).min(c), a.max(b).max(c))
 }
 
 fn corners(mesh: &TriMesh, t: usize) -> Triangle {
