@@ -190,7 +190,7 @@ fn store(image: Image, file: &Path) -> Result<()> {
         .map_err(|e| anyhow::anyhow!("{} was not written: {e}", file.display()))
 }
 
-/// Looks at everything from the front, a little from above and the right, so near that it fills the picture.
+/// Looks at everything from the front, from above and a little from the right, so near that it fills the picture.
 fn frame_all(world: &World, size: Vec2) -> Transform {
     let document = world.resource::<Project>().document();
     let mut corners: Vec<Vec3> = Vec::new();
@@ -212,7 +212,7 @@ fn frame_all(world: &World, size: Vec2) -> Transform {
     }
     let low = corners.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
     let high = corners.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
-    let from = Vec3::new(0.55, 0.42, 1.0).normalize();
+    let from = Vec3::new(0.55, 0.62, 1.0).normalize();
     let turn = Transform::IDENTITY.looking_to(-from, Vec3::Y).rotation;
     // The view's own middle and half of what it sees of a metre away, upwards and to the side.
     let tall = (0.5 * PerspectiveProjection::default().fov).tan() * FILLED;
