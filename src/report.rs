@@ -1,5 +1,6 @@
 //! What a session made, for `--report`.
 
+use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
@@ -7,7 +8,7 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use midair_csg::Preview;
 use midair_document::{Kind, Object, affine};
-use midair_field::{MeshSource, Placement};
+use midair_field::{MeshSource, Placement, RecipeHash};
 use midair_mesh::{TriMesh, check};
 use midair_playback::{FrameTimes, LineReport, ObjectReport, Report, StrokeReport, UpdateReport};
 use midair_solid::surface_of;
@@ -20,11 +21,23 @@ pub fn probe(world: &mut World) -> Report {
     let evaluations = world.resource::<Evaluations>();
     let document = project.document();
     let history = project.history();
+    // Copies that are turned and scaled alike have one surface.
+    let mut known = HashMap::new();
     let objects = document
         .objects()
         .map(|(id, object)| {
-            let mesh = mesh_of(object, project, &*evaluations.volumes, document.step());
-            let closed = mesh.as_ref().map(|m| check(m).watertight);
+            let measure = || {
+                let mesh = mesh_of(object, project, &*evaluations.volumes, document.step())?;
+                Some(Measured {
+                    triangles: mesh.triangles.len(),
+                    volume: mesh.volume(),
+                    closed: check(&mesh).watertight,
+                })
+            };
+            let measured = match shape_of(object) {
+                Some(shape) => *known.entry(shape).or_insert_with(measure),
+                None => measure(),
+            };
             ObjectReport {
                 id: id.0,
                 kind: match object.kind {
@@ -37,9 +50,9 @@ pub fn probe(world: &mut World) -> Report {
                 },
                 name: object.name.clone(),
                 transform: Mat4::from(object.placement.affine()).to_cols_array(),
-                triangles: mesh.as_ref().map_or(0, |m| m.triangles.len()),
-                volume: mesh.as_ref().map(TriMesh::volume),
-                closed,
+                triangles: measured.map_or(0, |m| m.triangles),
+                volume: measured.map(|m| m.volume),
+                closed: measured.map(|m| m.closed),
             }
         })
         .collect();
@@ -85,6 +98,25 @@ pub fn probe(world: &mut World) -> Report {
 
 fn milliseconds(all: impl Iterator<Item = Duration>) -> FrameTimes {
     FrameTimes::of(all.map(|d| d.as_secs_f32() * 1e3).collect())
+}
+
+/// What is told of a surface.
+#[derive(Clone, Copy)]
+struct Measured {
+    triangles: usize,
+    volume: f64,
+    closed: bool,
+}
+
+/// What a surface depends on, wherever it stands: the recipe, and how it is turned and scaled.
+fn shape_of(object: &Object) -> Option<(RecipeHash, [u32; 4], [u32; 3])> {
+    let (Kind::Solid(recipe) | Kind::Sheet(recipe)) = &object.kind else {
+        return None;
+    };
+    let at = &object.placement;
+    let turned = at.rotation.to_array().map(f32::to_bits);
+    let scaled = at.scale.to_array().map(f32::to_bits);
+    Some((recipe.hash(), turned, scaled))
 }
 
 /// The surface in world size, at the document's step.

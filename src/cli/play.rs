@@ -55,6 +55,7 @@ pub(super) fn run(args: Play) -> Result<()> {
         hands_only: args.hands_only,
         paced: args.paced,
         parts: args.report.is_some(),
+        counted: args.report.is_some(),
         probe,
         ..PlayOptions::default()
     };

@@ -14,7 +14,7 @@ use midair_studio::project::Selection;
 use midair_studio::settings::{Draws, Settings, SweepHands, SweepItem, SweepShape};
 use midair_sweep::{SWEEP, SweepAsk};
 
-use crate::matrix::{AWAY, BESIDE};
+use crate::sources::{AWAY, BESIDE};
 use crate::studio::{Studio, near};
 use crate::sweep::{LEFT, RIGHT};
 

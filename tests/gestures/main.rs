@@ -2,6 +2,7 @@
 //! against an exact boolean.
 
 mod brush;
+mod brush_faults;
 mod brush_session;
 mod carry;
 mod desk;
@@ -34,11 +35,13 @@ mod scaffold_session;
 mod sequence;
 mod shapes;
 mod small;
+mod sources;
 mod studio;
 mod surfaces;
 mod sweep;
 mod sweep_faults;
 mod sweep_flat;
+mod sweep_frames;
 mod symmetry;
 mod training;
 mod trouble;

@@ -15,7 +15,7 @@ use midair_studio::settings::{Settings, SweepItem};
 use midair_studio::tools::{ToolId, Tools};
 use midair_sweep::SWEEP;
 
-use crate::matrix;
+use crate::sources;
 use crate::studio::{Studio, near};
 
 const R: Side = Side::Right;
@@ -57,10 +57,10 @@ impl Studio {
 type Made = (ToolId, fn(&mut Studio) -> (ObjectId, Vec3));
 
 const MADE: [Made; 4] = [
-    (ASSEMBLE, matrix::component),
-    (SCAFFOLD, matrix::ring),
-    (SWEEP, matrix::plate),
-    (BRUSH, matrix::painting),
+    (ASSEMBLE, sources::component),
+    (SCAFFOLD, sources::ring),
+    (SWEEP, sources::plate),
+    (BRUSH, sources::painting),
 ];
 
 /// What the other mode has of it now.
@@ -115,7 +115,7 @@ fn whatever_is_in_the_hand_goes_through_the_ring_into_every_other_mode() {
             s.through_the_ring(id, at, &to);
             used(&s, id, &to, count);
             near(s.placement(id).translation, place.translation, 0.0);
-            s.reach(R, matrix::AWAY);
+            s.reach(R, sources::AWAY);
             assert!(s.undo_len() <= steps + 1, "one step");
             while s.undo_len() > steps {
                 s.click(Side::Left, Action::Undo);
@@ -131,7 +131,7 @@ fn whatever_is_in_the_hand_goes_through_the_ring_into_every_other_mode() {
 fn a_ring_that_is_cancelled_or_let_go_in_its_middle_carries_nothing() {
     let mut s = Studio::with(wear);
     s.input().head = Some(Pose::at(EYES));
-    let (id, at) = matrix::component(&mut s);
+    let (id, at) = sources::component(&mut s);
     s.settle();
     for cancelled in [true, false] {
         s.take(id, at);

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_document::{Document, Object, ObjectId};
-use midair_field::{Canvas, Node, Recipe};
+use midair_field::{Canvas, Node, Recipe, RecipeHash};
 use midair_studio::project::{Project, Selection};
 
 /// What is worked on.
@@ -15,6 +15,8 @@ pub struct Easel {
     pub selected: Option<usize>,
     /// The next press selects a stroke.
     pub picking: bool,
+    /// A solid that turned out to enclose nothing: no brush.
+    pub(crate) hollow: Option<RecipeHash>,
     /// A solid that was carried in as a brush, and what it is called.
     pub carried: Option<(String, Recipe)>,
     /// Which object that is: what is painted with it follows it.

@@ -53,7 +53,7 @@ fn look(colour: Color, alpha: f32) -> StandardMaterial {
 }
 
 pub(crate) fn show(
-    studio: Studio,
+    mut studio: Studio,
     draft: Res<Draft>,
     hands: Res<Hands>,
     held: Res<Held>,
@@ -82,14 +82,26 @@ pub(crate) fn show(
     };
     let radius = brush.radius / hands.metres_per_world;
     let seen = hand.tracked && held.get(side).is_none() && !editing;
+    let mut hollow = None;
     let at = match brush.skeleton {
         _ if !seen => None,
         BrushSkeleton::Volume => studio.volume().ok().and_then(|(_, recipe)| {
             let size = brush.size / hands.metres_per_world;
             // As fine as a thumbnail: it is only for the eye.
-            let step = recipe.bounds().size().max_element() / 72.0;
-            let made = evaluations.want(&recipe, step.clamp(1e-4, 1.0))?;
-            let key = Key::new(&recipe, step.clamp(1e-4, 1.0));
+            let longest = recipe.bounds().size().max_element();
+            let step = (longest / 72.0).clamp(1e-4, 1.0);
+            let mut made = evaluations.want(&recipe, step)?;
+            let mut key = Key::new(&recipe, step);
+            if made.mesh.triangles.is_empty() {
+                // Too thin for that, or without inside, as an open mesh can be.
+                let fine = (longest / 320.0).clamp(1e-4, 1.0);
+                made = evaluations.want(&recipe, fine)?;
+                key = Key::new(&recipe, fine);
+            }
+            if made.mesh.triangles.is_empty() {
+                hollow = Some(recipe.hash());
+                return None;
+            }
             let mesh = drawn.handle(key, &made, &mut meshes);
             let at = stroke::held(&recipe, &hand.pose, size);
             Some((mesh, transform(&at)))
@@ -103,6 +115,9 @@ pub(crate) fn show(
             Some((ball.clone(), at))
         }
     };
+    if hollow.is_some() {
+        studio.easel.hollow = hollow;
+    }
     let Some((mesh, at)) = at else {
         ghost.clear(&mut commands);
         return;

@@ -113,9 +113,13 @@ impl Studio<'_> {
     /// The volume brush: what it is called and what it is.
     ///
     /// # Errors
-    /// The library does not have it.
+    /// The library does not have it, or it turned out to enclose nothing.
     pub fn volume(&self) -> Result<(String, Recipe), StrokeFault> {
-        volume(&self.easel, &self.shelf, &self.settings.brush)
+        let (name, recipe) = volume(&self.easel, &self.shelf, &self.settings.brush)?;
+        if self.easel.hollow == Some(recipe.hash()) {
+            return Err(StrokeFault::NoVolume(name));
+        }
+        Ok((name, recipe))
     }
 
     /// The painting, or the one that is to be.
@@ -328,14 +332,25 @@ fn tell_if_too_fine(work: &Work, document: &Document, notices: &mut Notices) {
         .map(|s| stroke::finest(s) * scale)
         .fold(f32::INFINITY, f32::min);
     // A ball is sure to hold a node where its radius is most of half a cell's diagonal.
-    if finest < 0.75 * document.step() {
-        notices.info(format!(
-            "A brush of {:.1} mm is finer than the step of {:.1} mm: set the step to {:.1} mm to see it.",
-            finest * 1e3,
-            document.step() * 1e3,
-            (finest / 0.75 * 1e3).max(Document::STEPS.0 * 1e3),
-        ));
+    if finest >= 0.75 * document.step() {
+        return;
     }
+    let way = match finest / 0.75 {
+        step if step < Document::STEPS.0 => format!(
+            "no step shows it, the finest being {:.1} mm. Make the brush larger, or scale the painting up",
+            Document::STEPS.0 * 1e3
+        ),
+        // Rounded so that it does show it.
+        step => format!(
+            "set the step to {:.1} mm to see it",
+            (step * 1e4).floor() * 0.1
+        ),
+    };
+    notices.info(format!(
+        "A brush of {:.1} mm is finer than the step of {:.1} mm: {way}.",
+        finest * 1e3,
+        document.step() * 1e3,
+    ));
 }
 
 /// The pose of the hand that has begun something, and what it comes to.

@@ -89,6 +89,18 @@ struct MidairOutput {
     @location(4) @interpolate(flat) instance: u32,
 }
 
+// Outwards by the width of the line, and a little behind: only around what stands out does it show.
+fn midair_outside(clip: vec4<f32>, normal: vec3<f32>) -> vec4<f32> {
+    let size = midair_view::view.viewport.zw;
+    let towards = (midair_view::view.clip_from_world * vec4<f32>(normal, 0.0)).xy * size;
+    if dot(towards, towards) == 0.0 {
+        return clip;
+    }
+    let wide = dial.midair_line * max(1.0, size.y / 1080.0);
+    let by = 2.0 * wide * normalize(towards) / size;
+    return vec4<f32>(clip.xy + by * clip.w, 0.97 * clip.z, clip.w);
+}
+
 @vertex
 fn midair_vertex(in: MidairVertex) -> MidairOutput {
     let moved = midair_moved(in);
@@ -97,6 +109,9 @@ fn midair_vertex(in: MidairVertex) -> MidairOutput {
     out.world_position = midair_mesh::mesh_position_local_to_world(from_own, vec4<f32>(moved.position, 1.0));
     out.position = midair_space::position_world_to_clip(out.world_position.xyz);
     out.world_normal = midair_mesh::mesh_normal_local_to_world(moved.normal, in.instance);
+    if dial.midair_line > 0.0 {
+        out.position = midair_outside(out.position, out.world_normal);
+    }
     out.own_position = in.position;
     out.own_normal = moved.normal;
     out.instance = in.instance;
@@ -113,6 +128,9 @@ fn midair_fragment_main(in: MidairOutput, @builtin(front_facing) is_front: bool)
     io.instance_index = in.instance;
 #endif
     var pbr = midair_fragment::pbr_input_from_standard_material(io, is_front);
+    if dial.midair_line > 0.0 {
+        return vec4<f32>(pbr.material.base_color.rgb, 1.0);
+    }
     let from_own = midair_mesh::get_world_from_local(in.instance);
     let axes = mat3x3<f32>(from_own[0].xyz, from_own[1].xyz, from_own[2].xyz);
     let eye = normalize(transpose(axes) * pbr.V);

@@ -24,7 +24,8 @@ pub type Living = ExtendedMaterial<StandardMaterial, Written>;
 #[derive(Asset, TypePath, AsBindGroup, Clone, Debug)]
 #[bind_group_data(WrittenKey)]
 pub struct Written {
-    /// Its dials, then the pace of time: 0 where it stands still.
+    /// Its dials, then the pace of time: 0 where it stands still, then how many pixels wide the line is that it draws
+    /// around itself: 0 where it is no line.
     #[uniform(100)]
     dials: [Vec4; 3],
     /// The place of the material among all.
@@ -58,6 +59,18 @@ impl Written {
             dials,
             place: place as u32,
         }
+    }
+
+    /// The place of the material among all.
+    pub(crate) fn place(&self) -> usize {
+        self.place as usize
+    }
+
+    /// The line around what is made of it, in the colour of the base: the same shape, wider by so many pixels.
+    pub(crate) fn line(mut self, width: f32) -> Self {
+        const AT: usize = MOST_DIALS + 1;
+        self.dials[AT / 4][AT % 4] = width;
+        self
     }
 }
 

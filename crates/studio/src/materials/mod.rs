@@ -28,6 +28,8 @@ pub struct MaterialShelf {
     read: Vec<u32>,
     /// Whether its shader was made.
     compiled: Vec<bool>,
+    /// Which of them move what is made of them.
+    shifts: Vec<bool>,
 }
 
 impl MaterialShelf {
@@ -65,18 +67,30 @@ impl MaterialShelf {
             grow(&mut self.read, place);
             self.read[place] += 1;
             if self.compiled.get(place) == Some(&true) {
-                living::compile(place, self.all.at(place), shaders);
+                self.compile(place, shaders);
             }
         }
         Ok(())
+    }
+
+    /// Whether the material at a place moves what is made of it, so that it is seen elsewhere than it was modelled.
+    pub(crate) fn shifts(&self, place: usize) -> bool {
+        self.shifts.get(place) == Some(&true)
     }
 
     /// The material at a place is about to be drawn with.
     pub(crate) fn ready(&mut self, place: usize, shaders: &mut Assets<Shader>) {
         grow(&mut self.compiled, place);
         if !std::mem::replace(&mut self.compiled[place], true) {
-            living::compile(place, self.all.at(place), shaders);
+            self.compile(place, shaders);
         }
+    }
+
+    fn compile(&mut self, place: usize, shaders: &mut Assets<Shader>) {
+        let info = self.all.at(place);
+        grow(&mut self.shifts, place);
+        self.shifts[place] = info.wgsl.as_deref().is_some_and(text::shifts);
+        living::compile(place, info, shaders);
     }
 }
 

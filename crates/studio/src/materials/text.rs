@@ -52,7 +52,7 @@ fn assemble(info: &MaterialInfo, text: &str, group: &str, host: &str) -> String 
     }
     let _ = writeln!(
         all,
-        "    midair_pace: f32,\n}}\n@group({group}) @binding(100) var<uniform> dial: Dials;"
+        "    midair_pace: f32,\n    midair_line: f32,\n}}\n@group({group}) @binding(100) var<uniform> dial: Dials;"
     );
     let code = code(text);
     if !defines(&code, "shift") {
@@ -121,6 +121,11 @@ fn look_through(info: &MaterialInfo, text: &str) -> Result<(), Fault> {
         place(line, why)
     })?;
     Ok(())
+}
+
+/// Whether it moves what is made of it.
+pub(super) fn shifts(text: &str) -> bool {
+    defines(&code(text), "shift")
 }
 
 /// Whether a function of that name is written there.

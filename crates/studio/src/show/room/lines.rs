@@ -7,19 +7,20 @@ use bevy::render::renderer::RenderDevice;
 use bevy_mod_outline::{OutlinePlugin, OutlineStencil, OutlineVolume};
 
 use crate::StudioSet;
+use crate::materials::{Living, MaterialShelf};
 use crate::notice::Notices;
 use crate::settings::{RoomKind, Settings};
 use crate::show::{Cue, Cues, ObjectEntity};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((OutlinePlugin::EXTRUDE_VERTEX, WireframePlugin::default()))
-        .add_systems(Update, edges.after(StudioSet::Cue))
+        .add_systems(Update, (edges, super::hull::hulls).after(StudioSet::Cue))
         .add_systems(Update, triangles.run_if(resource_changed::<Settings>));
 }
 
 /// Of the line around what is selected, and around what is touched: in the accent, and in the colour of
 /// text; width in logical pixels.
-fn line(room: RoomKind, cue: &Cue) -> Option<(Color, f32)> {
+pub(super) fn line(room: RoomKind, cue: &Cue) -> Option<(Color, f32)> {
     let selected = Color::srgb_u8(0x8f, 0x7a, 0xe6);
     let touched = match room {
         RoomKind::Dusk => Color::srgb_u8(0xf2, 0xf0, 0xec),
@@ -38,17 +39,33 @@ fn line(room: RoomKind, cue: &Cue) -> Option<(Color, f32)> {
 fn edges(
     cues: Res<Cues>,
     settings: Res<Settings>,
-    mut objects: Query<(Entity, &ObjectEntity, Option<&mut OutlineVolume>), With<Mesh3d>>,
-    fresh: Query<(), Added<Mesh3d>>,
+    (shelf, materials): (Res<MaterialShelf>, Res<Assets<Living>>),
+    mut objects: Query<
+        (
+            Entity,
+            &ObjectEntity,
+            Option<&MeshMaterial3d<Living>>,
+            Option<&mut OutlineVolume>,
+        ),
+        With<Mesh3d>,
+    >,
+    fresh: Query<(), Or<(Added<Mesh3d>, Changed<MeshMaterial3d<Living>>)>>,
+    mut undressed: RemovedComponents<MeshMaterial3d<Living>>,
     mut commands: Commands,
 ) {
-    if !cues.is_changed() && !settings.is_changed() && fresh.is_empty() {
+    let other = undressed.read().count() > 0 || !fresh.is_empty() || shelf.is_changed();
+    if !cues.is_changed() && !settings.is_changed() && !other {
         return;
     }
     let plain = Cue::default();
-    for (entity, object, volume) in &mut objects {
+    for (entity, object, living, volume) in &mut objects {
         let cue = cues.0.get(&object.0).unwrap_or(&plain);
-        match (line(settings.look.room, cue), volume) {
+        // What a material moves has a line of the material's own.
+        let moved = living
+            .and_then(|m| materials.get(&m.0))
+            .is_some_and(|m| shelf.shifts(m.extension.place()));
+        let wanted = line(settings.look.room, cue).filter(|_| !moved);
+        match (wanted, volume) {
             (None, None) => {}
             (None, Some(_)) => {
                 commands

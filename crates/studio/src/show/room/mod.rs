@@ -2,6 +2,7 @@
 
 mod air;
 mod eye;
+mod hull;
 mod lines;
 
 use bevy::{
