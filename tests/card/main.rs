@@ -44,6 +44,31 @@ fn beside(radius: f32) -> Recipe {
     ]))
 }
 
+/// A box from which a ball of so large a radius is taken.
+fn bitten(radius: f32) -> Recipe {
+    let part = |op, at: Vec3, p: Primitive| Operand {
+        op,
+        placement: Placement::at(at),
+        recipe: p.into(),
+        muted: false,
+    };
+    Recipe::new(Node::Solid(vec![
+        part(
+            Op::Union,
+            Vec3::ZERO,
+            Primitive::Cuboid {
+                half: Vec3::splat(0.2),
+                rounding: 0.02,
+            },
+        ),
+        part(
+            Op::Subtract,
+            Vec3::new(0.15, 0.15, 0.2),
+            Primitive::Sphere { radius },
+        ),
+    ]))
+}
+
 fn commit(app: &mut App, edit: Edit) {
     app.world_mut()
         .resource_scope(|world, mut project: Mut<Project>| {

@@ -13,7 +13,7 @@ use midair_studio::evaluate::{Backend, Choice, Evaluations, Key, Made};
 use midair_studio::notice::Notices;
 use midair_studio::project::{Begin, Places, Project};
 
-use super::{beside, commit};
+use super::{bitten, commit};
 
 /// The app without any picture, its solids made by a card of its own.
 struct Unseen {
@@ -94,7 +94,7 @@ impl Unseen {
 
 fn painted(n: u32) -> Recipe {
     let point = |i: u32| Vec3::new(0.03 * i as f32 - 0.2, 0.0, 0.01 * i as f32).extend(1.0);
-    let ball = Stroke::new(Skeleton::Volume(beside(0.2)), 0.03);
+    let ball = Stroke::new(Skeleton::Volume(bitten(0.2)), 0.03);
     let led = Stroke::new(Skeleton::Points((0..=n).map(point).collect()), 0.06);
     Recipe::new(Node::Canvas(Canvas {
         strokes: vec![ball, led],
@@ -162,7 +162,7 @@ fn memory_runs_out(first: Recipe, second: Recipe, third: Recipe) {
 
 #[test]
 fn memory_that_runs_out_while_a_solid_is_edited() {
-    memory_runs_out(beside(0.2), beside(0.24), beside(0.22));
+    memory_runs_out(bitten(0.2), bitten(0.24), bitten(0.22));
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn memory_that_runs_out_while_a_painting_is_edited() {
 /// A budget that the solid outgrows: one line for it, however often it is changed.
 #[test]
 fn a_solid_that_outgrows_its_budget_is_told_of_once() {
-    let Some(mut it) = Unseen::within(beside(0.2), 12 << 20) else {
+    let Some(mut it) = Unseen::within(bitten(0.2), 12 << 20) else {
         return;
     };
     assert!(
@@ -188,7 +188,7 @@ fn a_solid_that_outgrows_its_budget_is_told_of_once() {
                 scale: Vec3::splat(4.0),
                 ..Placement::IDENTITY
             },
-            recipe: beside(radius),
+            recipe: bitten(radius),
             muted: false,
         };
         Recipe::new(Node::Solid(vec![part]))
@@ -211,7 +211,7 @@ fn a_solid_that_outgrows_its_budget_is_told_of_once() {
 #[test]
 fn a_card_that_is_lost_in_the_middle_of_an_edit() {
     for (first, second, third) in [
-        (beside(0.2), beside(0.24), beside(0.22)),
+        (bitten(0.2), bitten(0.24), bitten(0.22)),
         (painted(10), painted(12), painted(13)),
     ] {
         let Some(mut it) = Unseen::with(first) else {
