@@ -1,10 +1,11 @@
 //! What Brush says to bad input, and what becomes of it.
 
 use bevy::prelude::*;
-use midair_brush::{Ask, BRUSH};
+use midair_brush::{Ask, BRUSH, called, canvas};
 use midair_studio::command::Command;
 use midair_studio::hands::{Action, Pose, Side};
 use midair_studio::notice::Notices;
+use midair_studio::project::Shelf;
 use midair_studio::settings::Settings;
 
 use crate::studio::Studio;
@@ -135,4 +136,21 @@ fn a_stroke_with_poses_that_are_none_goes_on_where_the_hand_was() {
         s.settle();
         s.faultless(s.only(), 0.01);
     }
+}
+
+#[test]
+fn a_stroke_with_a_volume_is_called_as_the_library_calls_it() {
+    let mut s = painter("Volume", 0.03);
+    s.ask(Ask::Volume("brush/cat".into()).command());
+    dab(&mut s, HERE);
+    s.ask(Ask::Erase(0, true).command());
+    let shelf = s.world().resource::<Shelf>();
+    let object = s.object(s.only());
+    let strokes = &canvas(object).expect("a painting").strokes;
+    assert_eq!(called(&strokes[0], shelf), "Erased cat");
+    let painted = midair_field::Stroke {
+        erase: false,
+        ..strokes[0].clone()
+    };
+    assert_eq!(called(&painted, shelf), "Cat");
 }

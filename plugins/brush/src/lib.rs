@@ -34,7 +34,7 @@ pub use live::Sketchpad;
 pub use midair_studio::settings::BrushSettings as Options;
 pub use phase::{Draft, Phase};
 pub(crate) use start::paint_on;
-pub use stroke::StrokeFault;
+pub use stroke::{StrokeFault, called};
 
 /// The tool's name in files.
 pub const BRUSH: ToolId = ToolId::new("brush");

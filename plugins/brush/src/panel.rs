@@ -77,7 +77,8 @@ impl Panel for BrushPanel {
                 self.material(ui, world, &brush, painting.map(|(id, o, _)| (id, o)), asks);
                 if let Some((_, _, canvas)) = painting {
                     ui.separator();
-                    self.strokes(ui, easel, canvas, asks);
+                    let shelf = world.resource::<Shelf>();
+                    self.strokes(ui, (easel, shelf), canvas, asks);
                 }
             });
     }
@@ -87,7 +88,7 @@ fn skeletons(ui: &mut Ui, brush: &BrushSettings, asks: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         for kind in BrushSkeleton::ALL {
             let (glyph, does) = match kind {
-                BrushSkeleton::Point => (icon::SCRIBBLE, "Point: a ball, or the way it is led"),
+                BrushSkeleton::Point => (icon::CIRCLE, "Point: a ball, or the way it is led"),
                 BrushSkeleton::Line => (icon::LINE_SEGMENT, "Line between two points"),
                 BrushSkeleton::Polygon => (icon::POLYGON, "Area with four corners or more"),
                 BrushSkeleton::Volume => (icon::HORSE, "Volume: a solid as a brush"),
@@ -350,7 +351,13 @@ impl BrushPanel {
         }
     }
 
-    fn strokes(&mut self, ui: &mut Ui, easel: &Easel, canvas: &Canvas, asks: &mut Vec<Command>) {
+    fn strokes(
+        &mut self,
+        ui: &mut Ui,
+        (easel, shelf): (&Easel, &Shelf),
+        canvas: &Canvas,
+        asks: &mut Vec<Command>,
+    ) {
         ui.horizontal(|ui| {
             ui.label(strong(format!("Strokes {}", canvas.strokes.len())));
             let does = "Pick: the next press in the view selects a stroke";
@@ -375,7 +382,8 @@ impl BrushPanel {
                 for row in rows {
                     let at = canvas.strokes.len() - 1 - row;
                     let stroke = &canvas.strokes[at];
-                    let text = format!("{}  {} {}", glyph(stroke), stroke::name(stroke), at + 1);
+                    let called = stroke::called(stroke, shelf);
+                    let text = format!("{}  {called} {}", glyph(stroke), at + 1);
                     let on = easel.selected == Some(at);
                     let text = if stroke.erase {
                         RichText::new(text).weak()

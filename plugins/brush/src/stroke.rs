@@ -3,7 +3,7 @@
 use bevy::math::Affine3A;
 use bevy::prelude::*;
 use midair_field::{CANVAS_THRESHOLD, Node, Placement, Recipe, Skeleton, Stroke};
-use midair_studio::{hands::Pose, symmetry::Image};
+use midair_studio::{hands::Pose, project::Shelf, symmetry::Image};
 
 /// Why there is no stroke: one line with the way out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -328,6 +328,19 @@ pub fn name(stroke: &Stroke) -> &'static str {
         }
         (Skeleton::Volume(_), false) => "Volume",
         (Skeleton::Volume(_), true) => "Erased volume",
+    }
+}
+
+/// What a stroke is called where there is room for more: a volume of the library by its name there.
+pub fn called(stroke: &Stroke, shelf: &Shelf) -> String {
+    let Skeleton::Volume(recipe) = &stroke.skeleton else {
+        return name(stroke).to_owned();
+    };
+    let mut all = shelf.library.components().iter();
+    match all.find(|c| c.recipe == *recipe) {
+        Some(found) if stroke.erase => format!("Erased {}", found.name.to_lowercase()),
+        Some(found) => found.name.clone(),
+        None => name(stroke).to_owned(),
     }
 }
 
