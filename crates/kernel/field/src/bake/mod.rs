@@ -1,5 +1,7 @@
 //! From a triangle mesh to a signed distance (EasyVRModeling §5.2).
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod band;
 mod bars;
 mod boundary;
