@@ -23,7 +23,8 @@ const LAYER: usize = SIDE * SIDE;
 ///
 /// Distances are exact at the nodes within 1.75 steps of the surface, and so at every corner of a
 /// cell it passes. In the rest of a near brick the closest triangle is handed on from node to node,
-/// which may claim up to a tenth of a step too much, and no more than a step beyond the next node. At
+/// which may claim too much: hundredths of a step on fine meshes, on facets of many steps a quarter of
+/// a step at three steps and up to a whole one beyond seven, and no more than a step beyond the next node. At
 /// the corners of far bricks the closest triangle is sought in a tree.
 ///
 /// # Errors
