@@ -99,6 +99,14 @@ impl Drawn {
         let home = tempfile::tempdir().unwrap();
         let mut app = app(Stage::Picture, Places::below(home.path()), Begin::default());
         app.world_mut().resource_mut::<Evaluations>().backend = Backend::forced(choice);
+        let making = Arc::new(AtomicUsize::new(0));
+        let count = making.clone();
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            let note = move |cache: Res<PipelineCache>| {
+                count.store(cache.waiting_pipelines().count(), Ordering::Relaxed);
+            };
+            render.add_systems(Render, note.in_set(RenderSystems::Cleanup));
+        }
         prepare(&mut app);
         app.finish();
         app.cleanup();
@@ -106,15 +114,6 @@ impl Drawn {
             eprintln!("skipped: nothing draws on this machine");
             return None;
         }
-        let making = Arc::new(AtomicUsize::new(0));
-        let count = making.clone();
-        app.sub_app_mut(RenderApp).add_systems(
-            Render,
-            (move |cache: Res<PipelineCache>| {
-                count.store(cache.waiting_pipelines().count(), Ordering::Relaxed);
-            })
-            .in_set(RenderSystems::Cleanup),
-        );
         app.init_resource::<Taken>();
         app.update();
         let image = Image::new_target_texture(SIZE.x, SIZE.y, TextureFormat::Rgba8UnormSrgb, None);
