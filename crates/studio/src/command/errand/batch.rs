@@ -44,8 +44,8 @@ pub(super) struct Batch {
     pub failed: usize,
     /// How many of those were given up.
     pub given_up: usize,
-    /// Where the next one stands beside those before it, in metres.
-    pub aside: f32,
+    /// How far to the right those that stand in the scene reach, in metres from where they were dropped.
+    pub taken: Option<f32>,
 }
 
 #[derive(Default)]
@@ -77,7 +77,7 @@ impl Default for Batch {
             done: 0,
             failed: 0,
             given_up: 0,
-            aside: 0.0,
+            taken: None,
         }
     }
 }

@@ -15,6 +15,9 @@ use crate::notice::Notices;
 use crate::project::{Begin, Places, Project, Recoverables, Shelf, attach, install};
 use crate::settings::Settings;
 
+/// Metres between things that were dropped together.
+const APART: f32 = 0.05;
+
 pub(super) fn finish(world: &mut World) {
     let volumes = world.resource::<Evaluations>().volumes.clone();
     let mut errands = world.resource_mut::<Errands>();
@@ -150,9 +153,10 @@ fn take_in_imports(world: &mut World, brought: Vec<Brought>) {
             }
             if let Some(at) = import.at {
                 let bounds = component.recipe.bounds();
-                // Side by side in the order in which they were read, each on its foot.
-                let foot = Vec3::new(batch.aside, -bounds.min.y, 0.0);
-                batch.aside += bounds.size().x + 0.05;
+                // Side by side in the order in which they were read, each on its foot; the first where it was dropped.
+                let x = batch.taken.map_or(0.0, |end| end + APART - bounds.min.x);
+                batch.taken = Some(x + bounds.max.x);
+                let foot = Vec3::new(x, -bounds.min.y, 0.0);
                 let object = Object::solid(component.name.clone(), component.placed())
                     .placed(Placement::at(at + foot));
                 world.resource_scope(|world, mut notices: Mut<Notices>| {
