@@ -383,7 +383,7 @@ fn show(
                     }
                     None => {
                         // Its edges are sharp in main memory alone.
-                        let surface = evaluations.surface(&key).filter(|_| !made.edges.is_some());
+                        let surface = evaluations.surface(&key).filter(|_| made.edges.is_none());
                         let with = (&mut *writes, &mut *drawn, &mut *meshes);
                         let mut entity = commands.entity(entity);
                         showing.draw((key, &made), recipe, surface, with, &mut entity);
