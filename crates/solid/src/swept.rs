@@ -55,12 +55,8 @@ pub fn surface_of(
             let mesh = surface_of(recipe, &Placement::IDENTITY, step, meshes, cancel)?;
             let mut all = TriMesh::default();
             for place in row.places() {
-                let there = Placement {
-                    translation: place.translation,
-                    rotation: place.rotation,
-                    scale: glam::Vec3::splat(place.scale),
-                };
-                let one = mesh.transformed(&(placement.affine() * there.affine()));
+                let there = Placement::from(&place).affine();
+                let one = mesh.transformed(&(placement.affine() * there));
                 let first = all.positions.len() as u32;
                 all.positions.extend(one.positions);
                 all.normals.extend(one.normals);

@@ -150,7 +150,7 @@ fn sharpened(mesh: TriMesh, step: f32, field: &(impl Fn(Vec3) -> f32 + Sync)) ->
         let mut blunt: Vec<[u32; 2]> = back
             .iter()
             .flat_map(|&t| sides(mesh.triangles[t as usize]))
-            .map(|[a, b]| [a.min(b), a.max(b)])
+            .map(ascending)
             .collect();
         blunt.sort_unstable();
         splits.retain(|s| blunt.binary_search(&s.ends).is_err());
@@ -164,6 +164,11 @@ fn sharpened(mesh: TriMesh, step: f32, field: &(impl Fn(Vec3) -> f32 + Sync)) ->
 /// The directed sides of a triangle.
 fn sides([a, b, c]: [u32; 3]) -> impl Iterator<Item = [u32; 2]> {
     [[a, b], [b, c], [c, a]].into_iter()
+}
+
+/// A side by which both triangles know it.
+fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// A point of the surface, and the normal there.
@@ -376,7 +381,6 @@ impl Moved {
         for v in splits.iter().flat_map(|s| s.ends) {
             if let Some(foot) = foot(v) {
                 moved.positions[v as usize] = foot.at;
-                moved.normals[v as usize] = foot.normal;
                 moved.beside[v as usize] = true;
             }
         }
@@ -460,8 +464,8 @@ impl<F: Fn(Vec3) -> f32 + Sync> Cut<'_, F> {
             out.normals.push((a + b).try_normalize().unwrap_or(a));
         }
         let split = |a: u32, b: u32| {
-            let key = [a.min(b), a.max(b)];
-            let at = splits.binary_search_by_key(&key, |s| s.ends).ok()?;
+            let ends = ascending([a, b]);
+            let at = splits.binary_search_by_key(&ends, |s| s.ends).ok()?;
             Some(first + at as u32)
         };
         let (mut of, mut bad) = (Vec::new(), Vec::new());
@@ -493,7 +497,7 @@ impl<F: Fn(Vec3) -> f32 + Sync> Cut<'_, F> {
             };
             if !out.triangles[from..].iter().all(fits) {
                 let keys = sides(t).zip(on).filter(|(_, on)| on.is_some());
-                bad.extend(keys.map(|([a, b], _)| [a.min(b), a.max(b)]));
+                bad.extend(keys.map(|(side, _)| ascending(side)));
             }
         }
         bad.sort_unstable();
