@@ -10,8 +10,8 @@ use midair_studio::command::Command;
 use midair_studio::hands::{Action, Side};
 use midair_studio::materials::{DialDraft, Living, MaterialShelf};
 use midair_studio::objects::Ask;
-use midair_studio::project::Places;
-use midair_studio::show::ObjectMap;
+use midair_studio::project::{Places, Project};
+use midair_studio::show::{ObjectEntity, ObjectMap};
 
 use crate::studio::Studio;
 
@@ -104,6 +104,45 @@ fn a_painting_is_given_a_material_and_its_numbers_in_single_steps() {
     material(&mut s, id, "aurora");
     assert!(s.object(id).dials.is_empty());
     assert_eq!(s.warnings(), [] as [String; 0]);
+}
+
+/// What the engine sees where it looks for things to draw anew: whether each object wears what it is made of.
+#[derive(Resource, Default)]
+struct Late(Vec<ObjectId>);
+
+fn look_for_late(
+    project: Res<Project>,
+    shelf: Res<MaterialShelf>,
+    objects: Query<(&ObjectEntity, Has<MeshMaterial3d<Living>>)>,
+    mut late: ResMut<Late>,
+) {
+    for (id, lives) in &objects {
+        let object = project.document().object(id.0);
+        let wgsl = object.map(|o| shelf.all().at(shelf.all().place(o)).wgsl.is_some());
+        if wgsl.is_some_and(|wgsl| wgsl != lives) {
+            late.0.push(id.0);
+        }
+    }
+}
+
+/// Where it changes later in the frame, the card is given the new material with the old one's pipeline, and is lost.
+#[test]
+fn a_material_is_worn_before_the_engine_looks_at_what_is_drawn_anew() {
+    let mut s = Studio::with(|app| {
+        app.init_resource::<Late>().add_systems(
+            PostUpdate,
+            look_for_late.after(bevy::asset::AssetEventSystems),
+        );
+    });
+    let a = s.place("solid/cube", HERE);
+    s.place("solid/sphere", HERE + Vec3::X);
+    for name in ["aurora", "matte", "jelly"] {
+        material(&mut s, a, name);
+        s.frames(2);
+    }
+    s.ask(Command::Undo);
+    s.frames(2);
+    assert_eq!(s.world().resource::<Late>().0, [], "dressed a frame late");
 }
 
 #[test]

@@ -1,3 +1,4 @@
+use bevy::asset::AssetEventSystems;
 use bevy::shader::Shader;
 use bevy::{platform::collections::HashMap, prelude::*, render::render_resource::Face};
 use midair_document::{Kind, Object, ObjectId};
@@ -227,10 +228,11 @@ impl Look {
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Looks>()
-        // After the tools have said how things should look in this frame.
+        // After the tools have said how things should look in this frame; and before the engine looks at what is drawn
+        // anew: of what changes its kind of material later, it would draw the new one with the old one's pipeline.
         .add_systems(
             PostUpdate,
-            paint.run_if(
+            paint.before(AssetEventSystems).run_if(
                 resource_changed::<Cues>
                     .or_else(resource_changed::<Project>)
                     .or_else(resource_changed::<Settings>)
