@@ -3,11 +3,13 @@
 //! Started by `tests/xr/run.sh` in a root file system of its own; without one it says so and ends. Arguments name
 //! scenarios; all are run where there are none. `scenarios/NAME.ron` says what is performed.
 
+mod brush;
 mod calls;
 mod faults;
 mod frames;
 mod life;
 mod looks;
+mod materials;
 mod perform;
 mod profiles;
 mod restored;
@@ -31,7 +33,7 @@ struct Scenario {
 
 /// Those that are no session.
 fn own() -> impl Iterator<Item = Scenario> {
-    let all: [(&str, fn(&Path) -> Result<()>); 17] = [
+    let all: [(&str, fn(&Path) -> Result<()>); 19] = [
         ("absent", life::absent),
         ("from-flat", life::from_flat),
         ("tracking", life::tracking),
@@ -42,6 +44,8 @@ fn own() -> impl Iterator<Item = Scenario> {
         ("taught", taught::taught),
         ("restored", restored::restored),
         ("looks", looks::looks),
+        ("materials", materials::materials),
+        ("brush", brush::brush),
         ("desk", looks::desk),
         ("index", profiles::index),
         ("touch", profiles::touch),

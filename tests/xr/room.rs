@@ -87,6 +87,24 @@ impl Wand {
         self.trigger(false)
     }
 
+    /// Pushes the stick, the wand at one text of a panel, until another one farther down is seen.
+    pub fn scrolled(&mut self, board: &str, from: &str, to: &str) -> Result<()> {
+        let seen = |now: &Value| place(now, board, to).is_some();
+        if seen(&self.app.now) {
+            return Ok(());
+        }
+        self.aim(board, from)?;
+        let push = |wand: &mut Self, y: f32| {
+            let hand = &mut wand.performer.rig.hands[1];
+            (hand.pad_touch, hand.pad) = (y != 0.0, Vec2::new(0.0, y));
+            wand.performer.rig.send()
+        };
+        push(self, -0.5)?;
+        self.app.until(&format!("{board} scrolls to {to}"), seen)?;
+        push(self, 0.0)?;
+        self.performer.settle(&mut self.app)
+    }
+
     /// The trigger goes down or up on a panel, which has had it since.
     fn trigger(&mut self, down: bool) -> Result<()> {
         self.performer

@@ -79,6 +79,21 @@ pub fn field(ui: &mut Ui, name: &str, widget: impl Widget) -> Response {
     })
 }
 
+/// The same with the name above, for names of any length.
+pub fn tall_field(ui: &mut Ui, name: &str, widget: impl Widget) -> Response {
+    ui.add(Label::new(name).truncate());
+    ui.horizontal(|ui| {
+        let room = ui.available_width() - NUMBER - UNIT;
+        ui.spacing_mut().slider_width = room.clamp(36.0, 240.0);
+        let response = ui.add(widget);
+        let id = response.id;
+        ui.ctx()
+            .accesskit_node_builder(id, |node| node.set_label(name));
+        response
+    })
+    .inner
+}
+
 /// How wide a text is in a style, in points.
 pub fn width(ui: &Ui, text: &str, style: TextStyle) -> f32 {
     let font = style.resolve(ui.style());

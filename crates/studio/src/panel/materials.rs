@@ -4,6 +4,7 @@ use bevy_egui::egui::{Slider, Ui};
 use midair_document::{Dials, Object, ObjectId};
 use midair_solid::MaterialInfo;
 
+use super::kit;
 use crate::materials::MaterialShelf;
 use crate::objects::Ask;
 
@@ -41,10 +42,8 @@ impl MaterialRows {
         for (dial, set) in now.dials.iter().zip(now.values(first)) {
             let held = self.dragged.as_ref().filter(|(id, _)| *id == dial.id);
             let mut value = held.map_or(set, |(_, value)| *value);
-            let slider = Slider::new(&mut value, dial.range())
-                .max_decimals(3)
-                .text(&dial.name);
-            let response = ui.add(slider);
+            let slider = Slider::new(&mut value, dial.range()).max_decimals(3);
+            let response = kit::tall_field(ui, &dial.name, slider);
             let ended = response.drag_stopped() || (response.changed() && !response.dragged());
             if !response.changed() && !ended {
                 continue;

@@ -97,6 +97,8 @@ pub(crate) struct Labels {
     shown: BTreeMap<LabelKey, Shown>,
     letters: Letters,
     ink: Handle<Ink>,
+    /// The same before everything else.
+    front: Handle<Ink>,
 }
 
 impl Labels {
@@ -162,17 +164,22 @@ pub(crate) fn draw(
         let (mesh, fresh) = labels.letters.print_label(label, dark);
         if fresh || labels.ink == Handle::default() {
             let page = labels.letters.page(&mut images);
-            let ink = Ink {
-                page,
-                over: Over::Clear,
-            };
-            // Set anew, so that the renderer takes the new letters.
-            if labels.ink == Handle::default() {
-                labels.ink = inks.add(ink);
-            } else if let Some(mut known) = inks.get_mut(&labels.ink) {
-                *known = ink;
+            let Labels { ink, front, .. } = &mut *labels;
+            for (handle, over) in [(ink, Over::Clear), (front, Over::Front)] {
+                let page = page.clone();
+                // Set anew, so that the renderer takes the new letters.
+                if *handle == Handle::default() {
+                    *handle = inks.add(Ink { page, over });
+                } else if let Some(mut known) = inks.get_mut(&*handle) {
+                    *known = Ink { page, over };
+                }
             }
         }
+        // What stands in the middle of a thing, or of a stroke that grows, would be hidden by it.
+        let ink = match label.key {
+            LabelKey::Readout(_) | LabelKey::Operand(_) => &labels.front,
+            _ => &labels.ink,
+        };
         let mesh = meshes.add(mesh);
         let entity = match entity {
             Some(entity) => {
@@ -186,7 +193,7 @@ pub(crate) fn draw(
                 .spawn((
                     Name::new("label"),
                     Mesh3d(mesh),
-                    MeshMaterial3d(labels.ink.clone()),
+                    MeshMaterial3d(ink.clone()),
                     NotShadowCaster,
                     NotShadowReceiver,
                     place,
