@@ -1,3 +1,4 @@
+mod cells;
 mod predicates;
 mod report;
 mod touch;

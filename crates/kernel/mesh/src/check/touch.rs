@@ -3,6 +3,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use rayon::prelude::*;
 
+use super::cells::Cells;
 use super::predicates::{Triangle, folded, meet, meet_beyond_corner, open_axis};
 use crate::TriMesh;
 
@@ -92,16 +93,24 @@ impl TriMesh {
     #[must_use]
     pub fn touching(&self, some: &[u32]) -> Vec<[u32; 2]> {
         let boxes: Vec<Aabb> = some.iter().map(|&t| bounds(self, t as usize)).collect();
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let cells = Cells::new(&boxes);
+        let mut among = vec![false; self.triangles.len()];
+        for &t in some {
+            among[t as usize] = true;
+        }
         let mut pairs: Vec<[u32; 2]> = (0..self.triangles.len() as u32)
             .into_par_iter()
             .flat_map_iter(|i| {
-                let around = BvhNode::leaf(bounds(self, i as usize), 0);
-                tree.leaves(move |node| node.intersects(&around))
-                    .map(|j| some[j as usize])
-                    .filter(move |&j| i != j && touch(self, i as usize, j as usize))
-                    .map(move |j| [i.min(j), i.max(j)])
-                    .collect::<Vec<_>>()
+                let mut pairs = Vec::new();
+                cells.each_near(&bounds(self, i as usize), |b| {
+                    let j = some[b];
+                    // Two of them are looked at from one of the two.
+                    let looked = j == i || (among[i as usize] && j < i);
+                    if !looked && touch(self, i as usize, j as usize) {
+                        pairs.push([i.min(j), i.max(j)]);
+                    }
+                });
+                pairs
             })
             .collect();
         pairs.par_sort_unstable();
