@@ -24,7 +24,7 @@ use midair_field::{
     refuse_from,
 };
 use midair_mesh::TriMesh;
-use midair_surface::{Cancelled, Surface, crisp};
+use midair_surface::{Cancelled, Surface, crisp, crisp_unless};
 
 mod export;
 mod material;
@@ -157,6 +157,19 @@ impl Solid {
     /// The whole surface, closed and welded, with its sharp edges.
     pub fn crisp(&self) -> TriMesh {
         crisp(self.mesh(), &self.program)
+    }
+
+    /// What has sharp edges, of the surface that [`Self::mesh`] gave; `None` where that is it already.
+    ///
+    /// # Errors
+    ///
+    /// [`SolidError::Cancelled`] once `cancel` is set.
+    pub fn crisped(
+        &self,
+        mesh: &TriMesh,
+        cancel: &AtomicBool,
+    ) -> Result<Option<TriMesh>, SolidError> {
+        Ok(crisp_unless(mesh, &self.program, cancel)?)
     }
 }
 

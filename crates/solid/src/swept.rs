@@ -65,7 +65,11 @@ pub fn surface_of(
             }
             Ok(all)
         }
-        _ => Ok(Solid::make(recipe, placement, step, meshes, cancel)?.crisp()),
+        _ => {
+            let solid = Solid::make(recipe, placement, step, meshes, cancel)?;
+            let mesh = solid.mesh();
+            Ok(solid.crisped(&mesh, cancel)?.unwrap_or(mesh))
+        }
     }
 }
 

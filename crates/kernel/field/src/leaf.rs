@@ -5,6 +5,7 @@ use midair_mesh::Aabb;
 
 use crate::bake::Volume;
 use crate::canvas::{Block, Painting, Place};
+use crate::program::TOGETHER;
 use crate::shape::{NODES, Points, Shape};
 
 /// A primitive or baked mesh in its place.
@@ -81,6 +82,17 @@ impl Leaf {
                 Source::Volume(v) => v.sample(p),
                 Source::Canvas(c) => c.at(p, world),
             }
+    }
+
+    /// φ at some points of the world, to the bit what [`Self::at`] gives.
+    pub fn at_all(&self, points: &[Vec3; TOGETHER]) -> [f32; TOGETHER] {
+        match &self.source {
+            Source::Shape(s) => {
+                let local = points.map(|p| self.to_local.transform_point3(p));
+                s.at_all(&local).map(|d| self.scale * d)
+            }
+            Source::Volume(_) | Source::Canvas(_) => points.map(|p| self.at(p)),
+        }
     }
 
     /// The painting that it is.

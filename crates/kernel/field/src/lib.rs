@@ -35,7 +35,7 @@ pub use hash::RecipeHash;
 pub use midair_swept::{Place, Profile, Rib, Row, Surface, Sweep, SweepError};
 pub use placement::Placement;
 pub use primitive::{MAX_CONTOUR_POINTS, MAX_HULL_POINTS, MAX_LENGTH, Primitive, PrimitiveError};
-pub use program::{CompileError, MAX_LEAVES, MeshSource, Part, Program, local_step};
+pub use program::{CompileError, MAX_LEAVES, MeshSource, Part, Program, TOGETHER, local_step};
 pub use recipe::{MAX_DEPTH, MAX_OPERANDS, Node, Op, Operand, Recipe, RecipeError};
 pub use view::{ConvexView, Form, LeafView, OutlineEdge, TapeStep, VolumeView};
 

@@ -15,6 +15,10 @@ use crate::shape::Shape;
 use crate::stretch::stretched;
 use crate::{Node, Op, Operand, Placement, Primitive, PrimitiveError, Recipe, RecipeError};
 
+mod point;
+
+pub use point::{Part, TOGETHER};
+
 /// The most primitives and meshes one program may have.
 pub const MAX_LEAVES: u64 = 65_536;
 
@@ -189,72 +193,6 @@ impl Program {
     /// A box around the solid, in metres; [`Aabb::EMPTY`] where nothing can be left (Eq. 8).
     pub fn bounds(&self) -> Aabb {
         self.outline.as_ref().map_or(Aabb::EMPTY, |o| o.bounds)
-    }
-
-    /// φ at a point, in metres; infinite for a solid without operands.
-    pub fn at(&self, p: Vec3) -> f32 {
-        self.run(&self.tape, p)
-    }
-
-    /// φ in the cube of half side `half` metres about `centre` and two steps around it, without the
-    /// operands that cannot matter there.
-    pub fn part(&self, centre: Vec3, half: f32) -> Part<'_> {
-        let mut tape = Vec::new();
-        self.prune(&self.tape, centre, half, self.rounding(), &mut tape);
-        Part {
-            program: self,
-            tape,
-        }
-    }
-
-    fn run(&self, tape: &[Instr], p: Vec3) -> f32 {
-        // A tape leaves no more numbers at once than it has instructions.
-        let (mut few, mut many) = ([0.0; 32], Vec::new());
-        let stack = if tape.len() <= few.len() {
-            &mut few[..]
-        } else {
-            many.resize(tape.len(), 0.0);
-            &mut many[..]
-        };
-        let mut top = 0;
-        for &instr in tape {
-            match instr {
-                Instr::Load(leaf) => {
-                    stack[top] = self.leaves[leaf as usize].at(p);
-                    top += 1;
-                }
-                Instr::Negate if top > 0 => stack[top - 1] = -stack[top - 1],
-                Instr::Min | Instr::Max | Instr::MaxNegated if top > 1 => {
-                    let (a, b) = (stack[top - 2], stack[top - 1]);
-                    top -= 1;
-                    stack[top - 1] = match instr {
-                        Instr::Min => a.min(b),
-                        Instr::Max => a.max(b),
-                        _ => a.max(-b),
-                    };
-                }
-                _ => {}
-            }
-        }
-        if top == 0 {
-            f32::INFINITY
-        } else {
-            stack[top - 1]
-        }
-    }
-}
-
-/// A [`Program`] near one place.
-#[derive(Clone, Debug)]
-pub struct Part<'p> {
-    program: &'p Program,
-    tape: Vec<Instr>,
-}
-
-impl Part<'_> {
-    /// As [`Program::at`], for a point of the cube or no further than two steps from it.
-    pub fn at(&self, p: Vec3) -> f32 {
-        self.program.run(&self.tape, p)
     }
 }
 

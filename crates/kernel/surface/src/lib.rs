@@ -20,7 +20,7 @@ mod surface;
 mod table;
 mod weld;
 
-pub use crisp::crisp;
+pub use crisp::{crisp, crisp_unless};
 pub use dense::grid_from_fn;
 pub use surface::{Cancelled, Chunk, ChunkKey, Surface};
 pub use table::{MOST_TRIANGLES, cases};

@@ -2,11 +2,13 @@
 
 mod common;
 
+use std::sync::atomic::AtomicBool;
+
 use common::{Random, assert_sound};
 use glam::{Quat, Vec3};
 use midair_field::{FuseOptions, Node, Op, Operand, Placement, Primitive, Program, Recipe, fuse};
 use midair_mesh::TriMesh;
-use midair_surface::{Surface, crisp};
+use midair_surface::{Cancelled, Surface, crisp, crisp_unless};
 use proptest::prelude::*;
 
 const STEP: f32 = 0.01;
@@ -171,6 +173,38 @@ fn any_solid(r: &mut Random, many: usize) -> Recipe {
         operands.push(operand(op, primitive, placement));
     }
     Recipe::new(Node::Solid(operands))
+}
+
+#[test]
+fn a_set_flag_gives_it_up_and_what_has_no_edges_is_left_alone() {
+    let flag = |set| AtomicBool::new(set);
+    let make = |recipe: &Recipe| {
+        let program = Program::compile(recipe, &Placement::IDENTITY, STEP, &()).unwrap();
+        let grid = fuse(&program, &FuseOptions::default()).unwrap();
+        (Surface::extract(&grid).mesh(), program)
+    };
+    let (plain, program) = make(&bored());
+    assert_eq!(crisp_unless(&plain, &program, &flag(true)), Err(Cancelled));
+    let sharp = crisp_unless(&plain, &program, &flag(false)).unwrap();
+    assert_eq!(sharp, Some(crisp(plain, &program)));
+    let (ball, program) = make(&Primitive::Sphere { radius: 0.1 }.into());
+    assert_eq!(crisp_unless(&ball, &program, &flag(false)), Ok(None));
+}
+
+#[test]
+fn it_is_the_same_on_any_number_of_threads() {
+    let mut r = Random(5);
+    for many in [2, 4, 6] {
+        let recipe = any_solid(&mut r, many);
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| both(&recipe, &Placement::IDENTITY, STEP).1)
+        });
+        assert_eq!(one, three);
+    }
 }
 
 proptest! {

@@ -9,6 +9,7 @@ mod round;
 
 use glam::Vec3;
 
+use crate::program::TOGETHER;
 use crate::{Primitive, PrimitiveError};
 use convex::Convex;
 use helix::Helix;
@@ -120,6 +121,26 @@ impl Shape {
         }
     }
 
+    /// φ at some points, to the bit what [`Self::at`] gives.
+    pub fn at_all(&self, points: &[Vec3; TOGETHER]) -> [f32; TOGETHER] {
+        match self {
+            Self::Sphere(r) => together(points, |x, y, z| round::sphere(*r, x, y, z)),
+            Self::Cuboid(h, r) => together(points, |x, y, z| round::cuboid(*h, *r, x, y, z)),
+            Self::Cylinder(a, h, r) => {
+                together(points, |x, y, z| round::cylinder(*a, *h, *r, x, y, z))
+            }
+            Self::Frustum(f) => together(points, |x, y, z| f.at(x, y, z)),
+            Self::Torus(a, b) => together(points, |x, y, z| round::torus(*a, *b, x, y, z)),
+            Self::Capsule(r, h) => together(points, |x, y, z| round::capsule(*r, *h, x, y, z)),
+            Self::Ellipsoid(e) => together(points, |x, y, z| e.at(x, y, z)),
+            Self::Helix(h) => together(points, |x, y, z| h.at(x, y, z)),
+            // What has many sides looks at those near each.
+            Self::Extrusion(..) | Self::Revolution(_) | Self::Convex(_) => {
+                points.map(|p| self.at(p))
+            }
+        }
+    }
+
     /// φ at all nodes of a brick. The same bits on every machine: wider registers change how many
     /// nodes go at once, not what is computed for one.
     pub fn brick(&self, points: &Points, out: &mut [f32; NODES]) {
@@ -167,6 +188,13 @@ impl Shape {
             Self::Helix(h) => each(p, out, |x, y, z| h.at(x, y, z)),
         }
     }
+}
+
+/// One formula over some points; inlined so that it is compiled to vector code.
+#[inline(always)]
+fn together(points: &[Vec3; TOGETHER], f: impl Fn(f32, f32, f32) -> f32) -> [f32; TOGETHER] {
+    let [x, y, z] = [0, 1, 2].map(|axis| points.map(|p| p[axis]));
+    std::array::from_fn(|i| f(x[i], y[i], z[i]))
 }
 
 /// One formula over all nodes; inlined so that the loop is compiled to vector code.

@@ -5,7 +5,7 @@ use glam::{IVec3, Vec3};
 use midair_mesh::{Aabb, MeshHash};
 use proptest::prelude::*;
 
-use super::{STEP, compile, placement, recipe, solid};
+use super::{STEP, compile, placement, point, recipe, solid};
 use crate::bake::Volume;
 use crate::fuse::bricks_touching;
 use crate::scratch::EXACT;
@@ -161,4 +161,21 @@ fn limits_and_cancelling() {
 fn a_missing_mesh_is_named() {
     let error = Program::compile(&ring(), &Placement::IDENTITY, STEP, &()).err();
     assert!(error.expect("missing").to_string().starts_with("mesh 0707"));
+}
+
+proptest! {
+    /// Eight points together are eight points by themselves, and a part is the whole where it holds.
+    #[test]
+    fn points_together_are_what_they_are_alone(recipe in recipe(), around in point(0.3)) {
+        let program = compile(&recipe);
+        let mut r = 0.0_f32;
+        let points = [(); crate::TOGETHER].map(|()| {
+            r += 1.0;
+            around + 0.9 * STEP * Vec3::new(r.sin(), (2.0 * r).cos(), (3.0 * r).sin())
+        });
+        let alone = points.map(|p| program.at(p).to_bits());
+        prop_assert_eq!(program.at_all(&points).map(f32::to_bits), alone);
+        let part = program.part(around, STEP);
+        prop_assert_eq!(part.at_all(&points).map(f32::to_bits), points.map(|p| part.at(p).to_bits()));
+    }
 }
