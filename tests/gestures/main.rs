@@ -7,6 +7,7 @@ mod brush_session;
 mod carry;
 mod desk;
 mod dropping;
+mod early;
 mod fuzz;
 mod gamepad;
 mod holding;

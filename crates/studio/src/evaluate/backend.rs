@@ -8,8 +8,9 @@ use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use midair_field::{MeshSource, Placement, Program, Recipe};
 use midair_gpu::{Adapter, Emitted, Gpu, GpuError, GpuOptions, GpuSolid, SolidOptions, can_make};
 use midair_mesh::TriMesh;
-use midair_surface::crisp;
+use midair_surface::crisp_unless;
 
+use super::early::Early;
 use super::kept::Kept;
 pub use crate::settings::Backend as Choice;
 use crate::show::is_software;
@@ -266,14 +267,15 @@ impl Backend {
         opened
     }
 
-    /// The solid by the card, if that is to make it and can. Where the card draws as well, `early` has its surface
-    /// before main memory does.
+    /// The solid by the card, if that is to make it and can; what can be seen of it sooner is in `early` then. It may lack
+    /// its edges once `cancel` is set.
     pub(super) fn make(
         &self,
         recipe: &Recipe,
         step: f32,
         meshes: &dyn MeshSource,
-        early: &dyn Fn(Emitted),
+        early: &Early,
+        cancel: &AtomicBool,
     ) -> Asked {
         if !can_make(recipe) {
             return Asked::Processor;
@@ -289,12 +291,12 @@ impl Backend {
         let Ok(program) = Program::compile(recipe, &Placement::IDENTITY, step, meshes) else {
             return Asked::Processor;
         };
-        let mut made = self.on_card(&gpu, &program, early);
+        let mut made = self.on_card(&gpu, &program, early, cancel);
         // What others have there gives way before the processor is asked.
         if let Err(GpuError::OutOfMemory { .. } | GpuError::Full) = made
             && self.forget()
         {
-            made = self.on_card(&gpu, &program, early);
+            made = self.on_card(&gpu, &program, early, cancel);
         }
         match made {
             Ok(made) => {
@@ -389,7 +391,8 @@ impl Backend {
         &self,
         gpu: &Arc<Gpu>,
         program: &Program,
-        early: &dyn Fn(Emitted),
+        early: &Early,
+        cancel: &AtomicBool,
     ) -> Result<OnCard, GpuError> {
         let mut kept = self.0.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let started = Instant::now();
@@ -403,11 +406,15 @@ impl Backend {
         let made = started.elapsed();
         let emitted = solid.emit()?;
         if gpu.is_shared() {
-            early(emitted.clone());
+            early.lies_on_card(emitted.clone());
         }
         let mesh = emitted.mesh()?;
+        if !program.is_painting() {
+            early.is_plain(&mesh);
+        }
         let plain = mesh.positions.len();
-        let mesh = crisp(mesh, program);
+        let sharp = crisp_unless(&mesh, program, cancel).ok().flatten();
+        let mesh = sharp.unwrap_or(mesh);
         let timing = solid.timing();
         kept.keep(solid, gpu.budget());
         // Without a clock on the device all of it counts as fusing, all of the way back as extracting.

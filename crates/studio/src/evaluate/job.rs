@@ -10,12 +10,12 @@ use midair_field::Placement;
 use midair_field::Recipe;
 use midair_field::bake::Progress;
 use midair_field::{Node, Place, Sweep};
-use midair_gpu::Emitted;
 use midair_library::Volumes;
 use midair_mesh::{Aabb, TriMesh};
 use midair_solid::{Clones, Solid, SolidError, clones, own_surface};
 
 use super::backend::{Asked, Backend};
+use super::early::Early;
 use super::{Key, Update};
 use crate::show::to_bevy_mesh;
 
@@ -33,8 +33,7 @@ pub struct Made {
     pub(crate) pieces: std::sync::Mutex<Vec<Mesh>>,
     /// The same, ready to be drawn; taken by the first that draws it.
     pub(crate) drawn: std::sync::Mutex<Option<Mesh>>,
-    /// The first of its vertices that lie on its sharp edges, if it has any.
-    pub(crate) edges: Option<usize>,
+    look: Look,
     /// The same, ready to be picked; `None` where the solid is empty.
     pub shape: Option<SharedShape>,
     /// Milliseconds to fuse and to extract.
@@ -47,6 +46,18 @@ pub struct Made {
     pub solid: Option<Arc<Solid>>,
     /// Bytes held, about.
     pub bytes: usize,
+}
+
+/// What makes a drawing of a mesh.
+enum Look {
+    /// The mesh as it is.
+    Smooth,
+    /// Parted at the vertices from this one on, which lie on its sharp edges.
+    Edged(usize),
+    /// With these places on a picture.
+    Pictured(Vec<Vec2>),
+    /// Creased where it is sharp, with these places on a picture.
+    Creased(Vec<Vec2>),
 }
 
 /// With its box, which otherwise each thing that is drawn as it would look for in all of its corners.
@@ -92,11 +103,8 @@ impl Made {
     /// An open sweep, with its places on a picture.
     fn from_sheet(sweep: &Sweep) -> Option<Self> {
         let surface = sweep.surface().ok()?;
-        let made = Self::from(Arc::new(surface.mesh), TriMeshFlags::empty());
-        if let Ok(mut drawn) = made.drawn.lock() {
-            let with = |m: Mesh| m.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, surface.uv);
-            *drawn = drawn.take().map(with);
-        }
+        let look = Look::Pictured(surface.uv);
+        let made = Self::from(Arc::new(surface.mesh), TriMeshFlags::empty(), look);
         Some(Self {
             volume: 0.0,
             ..made
@@ -104,60 +112,58 @@ impl Made {
     }
 
     /// A closed sweep, drawn sharp where it is and with its places on a picture.
-    fn from_swept(mesh: TriMesh, mut uv: Vec<Vec2>) -> Self {
-        let (sharp, more) = mesh.creased(SHARP);
-        let own = more.iter().filter_map(|&v| uv.get(v as usize).copied());
-        let own: Vec<Vec2> = own.collect();
-        uv.extend(own);
-        let made = Self::from_mesh(Arc::new(mesh));
-        if let Ok(mut drawn) = made.drawn.lock() {
-            let sharp = boxed(to_bevy_mesh(&sharp), made.bounds);
-            *drawn = Some(sharp.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv));
-        }
-        made
+    fn from_swept(mesh: TriMesh, uv: Vec<Vec2>) -> Self {
+        Self::from(Arc::new(mesh), TriMeshFlags::ORIENTED, Look::Creased(uv))
     }
 
     /// A solid of which the vertices from number `plain` on are those of its sharp edges.
     fn from_crisp(mesh: TriMesh, plain: usize) -> Self {
-        let made = Self::from_mesh(Arc::new(mesh));
-        if made.mesh.positions.len() == plain {
-            return made;
-        }
-        let made = Self {
-            edges: Some(plain),
-            ..made
+        let look = match mesh.positions.len() > plain {
+            true => Look::Edged(plain),
+            false => Look::Smooth,
         };
-        if let Ok(mut drawn) = made.drawn.lock() {
-            *drawn = Some(made.drawing());
-        }
-        made
+        Self::from(Arc::new(mesh), TriMeshFlags::ORIENTED, look)
     }
 
     /// It as it is drawn.
     pub(crate) fn drawing(&self) -> Mesh {
-        let mesh = match self.edges {
-            Some(first) => to_bevy_mesh(&self.mesh.parted(first)),
-            None => to_bevy_mesh(&self.mesh),
+        let mesh = &*self.mesh;
+        let drawn = match &self.look {
+            Look::Smooth => to_bevy_mesh(mesh),
+            Look::Edged(first) => to_bevy_mesh(&mesh.parted(*first)),
+            Look::Pictured(uv) => {
+                to_bevy_mesh(mesh).with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv.clone())
+            }
+            Look::Creased(uv) => {
+                let (sharp, more) = mesh.creased(SHARP);
+                let own = more.iter().filter_map(|&v| uv.get(v as usize));
+                let all: Vec<Vec2> = uv.iter().chain(own).copied().collect();
+                to_bevy_mesh(&sharp).with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, all)
+            }
         };
-        boxed(mesh, self.bounds)
+        boxed(drawn, self.bounds)
+    }
+
+    /// Whether it has edges that the field put back.
+    pub(crate) fn has_edges(&self) -> bool {
+        matches!(self.look, Look::Edged(_))
     }
 
     /// From a mesh that needs no evaluation.
     pub fn from_mesh(mesh: Arc<TriMesh>) -> Self {
         // Oriented, so that a hand inside the solid touches it.
-        Self::from(mesh, TriMeshFlags::ORIENTED)
+        Self::from(mesh, TriMeshFlags::ORIENTED, Look::Smooth)
     }
 
-    fn from(mesh: Arc<TriMesh>, flags: TriMeshFlags) -> Self {
+    fn from(mesh: Arc<TriMesh>, flags: TriMeshFlags, look: Look) -> Self {
         let shape = shape(&mesh, flags);
         let bounds = mesh.bounds();
-        let drawn = boxed(to_bevy_mesh(&mesh), bounds);
         // Positions, normals and indices, held as a mesh, a drawing and a collider with its tree.
         let bytes = mesh.positions.len() * 24 * 3 + mesh.triangles.len() * (12 * 3 + 64);
-        Self {
+        let made = Self {
             volume: mesh.volume(),
-            drawn: std::sync::Mutex::new(Some(drawn)),
-            edges: None,
+            drawn: std::sync::Mutex::default(),
+            look,
             shape,
             fuse_ms: 0.0,
             extract_ms: 0.0,
@@ -167,7 +173,11 @@ impl Made {
             pieces: std::sync::Mutex::default(),
             bounds,
             mesh,
+        };
+        if let Ok(mut drawn) = made.drawn.lock() {
+            *drawn = Some(made.drawing());
         }
+        made
     }
 }
 
@@ -180,8 +190,8 @@ pub(super) struct Running {
     pub wanted: u64,
     pub progress: Progress,
     pub cancelled: Arc<AtomicBool>,
-    /// Its surface on the card that draws, there before the outcome is.
-    pub early: Arc<OnceLock<Emitted>>,
+    /// There before the outcome is.
+    pub early: Arc<Early>,
     outcome: Arc<OnceLock<Option<Outcome>>>,
 }
 
@@ -246,9 +256,8 @@ impl Running {
                 if let Some(own) = own_surface(&recipe) {
                     return Ok(Made::from_swept(own.mesh, own.uv));
                 }
-                // Of one evaluation there is one surface.
-                let early = |surface| drop(early.set(surface));
-                if let Asked::Made(on_card) = backend.make(&recipe, step, &meshes, &early) {
+                let asked = backend.make(&recipe, step, &meshes, &early, &cancelled);
+                if let Asked::Made(on_card) = asked {
                     if cancelled.load(Ordering::Relaxed) {
                         return Err(SolidError::Cancelled);
                     }
@@ -263,12 +272,17 @@ impl Running {
                     None => Solid::make(&recipe, &at, step, &meshes, &cancelled),
                 }?;
                 let extracted = Instant::now();
-                let mesh = solid.crisp();
+                let painting = matches!(recipe.node(), Node::Canvas(_));
+                let mesh = solid.mesh();
+                if !painting {
+                    early.is_plain(&mesh);
+                }
+                let mesh = solid.crisped(&mesh, &cancelled)?.unwrap_or(mesh);
                 let extract = solid.extract + extracted.elapsed();
                 let mut made = Made::from_crisp(mesh, solid.surface().vertices());
                 made.fuse_ms = solid.fuse.as_secs_f64() * 1e3;
                 made.extract_ms = extract.as_secs_f64() * 1e3;
-                if matches!(recipe.node(), Node::Canvas(_)) {
+                if painting {
                     // Shared with the states before and after, so most of it counts twice.
                     made.bytes += solid.grid().bricks().count() * 1024;
                     made.solid = Some(Arc::new(solid));
@@ -343,4 +357,55 @@ fn shape(mesh: &TriMesh, flags: TriMeshFlags) -> Option<SharedShape> {
     }
     let trimesh = Trimesh::with_flags(mesh.positions.clone(), mesh.triangles.clone(), flags);
     trimesh.ok().map(SharedShape::new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use midair_field::{Profile, Rib};
+
+    /// A strip one metre wide, a plate where it has thickness.
+    fn strip(thickness: f32) -> Sweep {
+        let rib = |i: u32| {
+            let at = Vec3::Y * 0.05 * i as f32;
+            Rib {
+                points: [at - 0.5 * Vec3::X, at + 0.5 * Vec3::X],
+                tangents: [Vec3::X; 2],
+                slopes: [1.0; 2],
+                start: Quat::IDENTITY,
+                twist: 0.0,
+            }
+        };
+        Sweep {
+            ribs: (0..12).map(rib).collect(),
+            count: 12,
+            profile: Profile::Sheet,
+            thickness,
+            caps: false,
+        }
+    }
+
+    #[test]
+    fn what_was_let_go_is_drawn_again_as_it_was() {
+        let sheet = Made::from_sheet(&strip(0.0)).unwrap();
+        let solid = strip(0.02).solid().unwrap();
+        let corners = solid.mesh.positions.len();
+        let plate = Made::from_swept(solid.mesh, solid.uv);
+        for made in [&sheet, &plate] {
+            let first = made.drawn.lock().unwrap().take().unwrap();
+            let again = made.drawing();
+            for what in [
+                Mesh::ATTRIBUTE_POSITION,
+                Mesh::ATTRIBUTE_NORMAL,
+                Mesh::ATTRIBUTE_UV_0,
+            ] {
+                let [a, b] = [&first, &again].map(|m| m.attribute(what.id).unwrap().get_bytes());
+                assert_eq!(a, b, "{what:?}");
+            }
+            let places = again.attribute(Mesh::ATTRIBUTE_UV_0).unwrap().len();
+            assert_eq!(places, again.count_vertices());
+        }
+        // Its rims are sharp.
+        assert!(plate.drawing().count_vertices() > corners);
+    }
 }

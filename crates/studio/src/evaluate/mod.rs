@@ -6,6 +6,7 @@
 
 mod backend;
 mod delivery;
+mod early;
 mod job;
 mod kept;
 mod live;
@@ -154,9 +155,22 @@ impl Evaluations {
     /// Its surface on the card that draws, from when that has made it until the frame that takes the solid in: what can
     /// be seen before it can be touched. For the eye alone, so no session knows of it.
     pub fn surface(&self, key: &Key) -> Option<Emitted> {
-        let on_its_way = self.running.iter().find(|r| r.key == *key);
-        let early = on_its_way.and_then(|r| r.early.get());
+        let early = self.on_its_way(key).and_then(|r| r.early.surface());
         early.or_else(|| self.fresh.get(key)).cloned()
+    }
+
+    /// The same from main memory, for whoever asks first: a finished solid without the sharp edges that it will have.
+    pub(crate) fn take_plain(&self, key: &Key) -> Option<Mesh> {
+        self.on_its_way(key)?.early.take_plain()
+    }
+
+    /// Asked for, and not taken in yet.
+    pub(crate) fn is_coming(&self, key: &Key) -> bool {
+        self.on_its_way(key).is_some()
+    }
+
+    fn on_its_way(&self, key: &Key) -> Option<&Running> {
+        self.running.iter().find(|r| r.key == *key)
     }
 
     /// Why it cannot be made, if it was tried.
@@ -243,7 +257,7 @@ impl Evaluations {
                 continue;
             };
             let running = self.running.remove(at);
-            if let Some(surface) = running.early.get() {
+            if let Some(surface) = running.early.surface() {
                 self.fresh.insert(key, surface.clone());
             }
             match running.take() {

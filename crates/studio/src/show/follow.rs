@@ -9,12 +9,12 @@ use bevy::platform::collections::hash_map::Entry;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Collider;
 use midair_document::{Document, Kind, Object, ObjectId};
-use midair_field::{Node, Placement, Recipe, RecipeHash};
-use midair_gpu::Emitted;
-use midair_mesh::{MeshHash, TriMesh};
+use midair_field::{Node, Placement, Recipe};
+use midair_mesh::TriMesh;
 
 use super::material::{Dress, Worn};
-use super::{CardMesh, CardWrites, Drafts, Seen, transform};
+use super::showing::{Drawn, Showing};
+use super::{CardWrites, Drafts, transform};
 use crate::StudioSet;
 use crate::evaluate::{Deliver, Delivered, Delivery, Evaluations, Key, Made, ONE_BY_ONE, merged};
 use crate::pick::Proxy;
@@ -37,87 +37,6 @@ impl ObjectMap {
     /// The entity that shows an object.
     pub fn get(&self, object: ObjectId) -> Option<Entity> {
         self.0.get(&object).copied()
-    }
-}
-
-/// What an entity shows at the moment.
-#[derive(Component, Default)]
-struct Showing {
-    solid: Option<Key>,
-    mesh: Option<MeshHash>,
-    /// Keeps what is drawn in memory.
-    made: Option<Arc<Made>>,
-    proxy: Option<Entity>,
-    /// The recipe that it came with.
-    first: Option<RecipeHash>,
-    /// What the card draws it with, once it was changed.
-    card: Option<OnCard>,
-}
-
-/// A mesh that the card writes into, and what it shows; `None` while another mesh is shown.
-struct OnCard {
-    mesh: CardMesh,
-    shows: Option<Key>,
-}
-
-impl Showing {
-    /// What the card has made is drawn before it can be touched, if there is room for it and it is not drawn yet.
-    fn draw_early(
-        &mut self,
-        (key, surface): (Key, Emitted),
-        recipe: &Recipe,
-        writes: &mut CardWrites,
-        entity: &mut EntityCommands,
-    ) -> bool {
-        let fresh = |card: &&mut OnCard| card.shows != Some(key);
-        let Some(card) = self.card.as_mut().filter(fresh) else {
-            return false;
-        };
-        if !card.mesh.write(&surface, writes) {
-            return false;
-        }
-        card.shows = Some(key);
-        let around = recipe.bounds().grown(key.step());
-        card.mesh.seen(around).worn_by(entity);
-        true
-    }
-
-    /// Draws a solid that has come: where it lies on the card, or from main memory.
-    fn draw(
-        &mut self,
-        (key, made): (Key, &Made),
-        recipe: &Recipe,
-        surface: Option<Emitted>,
-        (writes, drawn, meshes): (&mut CardWrites, &mut Drawn, &mut Assets<Mesh>),
-        entity: &mut EntityCommands,
-    ) {
-        let lies_there = surface.is_some();
-        if surface.is_some_and(|s| self.draw_early((key, s), recipe, writes, entity)) {
-            return;
-        }
-        let around = recipe.bounds().grown(key.step());
-        if let Some(card) = self.card.as_ref().filter(|c| c.shows == Some(key)) {
-            card.mesh.seen(around).worn_by(entity);
-            return;
-        }
-        // The first is shared with all that look like it; what then changes has a mesh of its own.
-        let changed = *self.first.get_or_insert(key.recipe) != key.recipe;
-        if lies_there && changed {
-            let mesh = CardMesh::new(&made.mesh, meshes);
-            mesh.seen(around).worn_by(entity);
-            self.card = Some(OnCard {
-                mesh,
-                shows: Some(key),
-            });
-            return;
-        }
-        let plain = Seen::from(drawn.handle(key, made, meshes));
-        match self.card.as_mut().and_then(|c| c.shows.take()) {
-            Some(_) => plain.worn_by(entity),
-            None => {
-                entity.try_insert(Mesh3d(plain.mesh));
-            }
-        }
     }
 }
 
@@ -156,23 +75,6 @@ pub(super) struct CloneOf(pub ObjectId);
 /// Operands shown in place of a result that is still being made.
 #[derive(Component)]
 struct StandIn;
-
-/// Bevy meshes by what they were made from, so that copies share one.
-#[derive(Resource, Default)]
-pub struct Drawn(HashMap<Key, Handle<Mesh>>);
-
-impl Drawn {
-    /// What draws a solid; the first time it is taken over from where it was made.
-    pub fn handle(&mut self, key: Key, made: &Made, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
-        let known = self.0.get(&key).filter(|h| meshes.contains(h.id()));
-        known.cloned().unwrap_or_else(|| {
-            let mesh = made.drawn.lock().ok().and_then(|mut m| m.take());
-            let handle = meshes.add(mesh.unwrap_or_else(|| made.drawing()));
-            self.0.insert(key, handle.clone());
-            handle
-        })
-    }
-}
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<ObjectMap>()
@@ -282,7 +184,7 @@ fn show(
     mut meshes: ResMut<Assets<Mesh>>,
     (map, mut arriving): (Res<ObjectMap>, ResMut<Arriving>),
     mut objects: Query<(&mut Showing, Worn, Option<&Children>)>,
-    stand_ins: Query<(), Or<(With<StandIn>, With<CloneOf>)>>,
+    stand_ins: Query<(), StoodIn>,
     (delivery, delivered): (Res<Delivery>, Res<Delivered>),
     mut awake: Local<u8>,
     mut commands: Commands,
@@ -309,11 +211,7 @@ fn show(
             Kind::Solid(recipe) | Kind::Sheet(recipe) => {
                 // The document's step first, which is what update makes; then finer, for the eye.
                 let mut steps = display_steps(document, object, recipe);
-                // Drawn on the card, and taken back before it could be touched: what was there is drawn again.
-                let early = showing.card.as_ref().and_then(|c| c.shows);
-                if early.is_some_and(|k| k.recipe != recipe.hash()) && early != showing.solid {
-                    showing.solid = None;
-                }
+                showing.take_back(|k| steps.iter().any(|&s| *k == Key::new(recipe, s)));
                 let shown = showing.solid;
                 let painted = matches!(recipe.node(), Node::Canvas(_));
                 let before = shown.filter(|_| painted).map(|k| k.recipe);
@@ -331,16 +229,21 @@ fn show(
                     })
                     .next();
                 let Some((key, made)) = best else {
-                    let surface = steps
+                    let coming = steps
                         .iter()
                         .map(|&s| Key::new(recipe, s))
-                        .take_while(|k| shown != Some(*k))
-                        .find_map(|k| Some((k, evaluations.surface(&k)?)));
-                    if let Some(surface) = surface {
-                        let mut entity = commands.entity(entity);
-                        showing.draw_early(surface, recipe, &mut writes, &mut entity);
+                        .take_while(|k| shown != Some(*k));
+                    let with = (&mut *writes, &mut *drawn, &mut *meshes);
+                    let mut entity = commands.entity(entity);
+                    if left > 0
+                        && showing.draw_coming(coming, recipe, &evaluations, with, &mut entity)
+                    {
+                        left -= 1;
+                        clear(children, &stand_ins, &mut commands);
+                        continue;
                     }
-                    if showing.made.is_none() && children.is_none() {
+                    let entity = entity.id();
+                    if showing.is_empty() && children.is_none() {
                         stand_in(
                             recipe,
                             &mut evaluations,
@@ -383,7 +286,7 @@ fn show(
                     }
                     None => {
                         // Its edges are sharp in main memory alone.
-                        let surface = evaluations.surface(&key).filter(|_| made.edges.is_none());
+                        let surface = evaluations.surface(&key).filter(|_| !made.has_edges());
                         let with = (&mut *writes, &mut *drawn, &mut *meshes);
                         let mut entity = commands.entity(entity);
                         showing.draw((key, &made), recipe, surface, with, &mut entity);
@@ -408,11 +311,7 @@ fn show(
                 made
             }
         };
-        for child in children.into_iter().flatten() {
-            if stand_ins.contains(*child) {
-                commands.entity(*child).despawn();
-            }
-        }
+        clear(children, &stand_ins, &mut commands);
         if let Some(proxy) = showing.proxy.take() {
             commands.entity(proxy).despawn();
         }
@@ -431,11 +330,18 @@ fn show(
         showing.made = Some(made);
     }
     arriving.solids = waiting;
-    // Handles that only this table holds belong to nothing on screen.
-    drawn.0.retain(|_, handle| match handle {
-        Handle::Strong(strong) => Arc::strong_count(strong) > 1,
-        Handle::Uuid(..) => true,
-    });
+    drawn.tidy(&evaluations);
+}
+
+/// What a solid of one piece takes the place of.
+type StoodIn = Or<(With<StandIn>, With<CloneOf>)>;
+
+fn clear(children: Option<&Children>, stand_ins: &Query<(), StoodIn>, commands: &mut Commands) {
+    for &child in children.into_iter().flatten() {
+        if stand_ins.contains(child) {
+            commands.entity(child).despawn();
+        }
+    }
 }
 
 /// The steps in the object's own frame at which it is shown, the finest first: the one that gives the
@@ -510,7 +416,7 @@ fn stand_in(
         let found = display_steps(document, &as_object, &operand.recipe)
             .into_iter()
             .map(|step| Key::new(&operand.recipe, step))
-            .find_map(|key| evaluations.peek(&key).and(drawn.0.get(&key)));
+            .find_map(|key| evaluations.peek(&key).and(drawn.get(&key)));
         if let Some(handle) = found {
             commands.spawn((
                 StandIn,

@@ -10,6 +10,7 @@ mod ink;
 mod material;
 mod readout;
 mod room;
+mod showing;
 mod stand_in;
 
 use std::collections::BTreeMap;
@@ -21,12 +22,11 @@ use midair_field::Placement;
 pub(crate) use card::Roomy;
 pub use card::{CardMesh, CardWrites, Seen, SeenParts};
 pub use cue::{Cue, Cues, Tint};
-pub use follow::{
-    Arriving, Drawn, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh,
-};
+pub use follow::{Arriving, ObjectEntity, ObjectMap, ShowObjects, display_steps, to_bevy_mesh};
 pub use form::form;
 pub use readout::{Readout, Readouts};
 pub use room::{Eye, FIELD_OF_VIEW, RoomPlugin, Unhurried, camera, headset, is_software};
+pub use showing::Drawn;
 pub use stand_in::{Latest, StandIn};
 
 /// Where objects stand while a hand moves them: thrown away on cancel, an edit on release.

@@ -1,4 +1,8 @@
 use super::*;
+
+/// Nothing is given up here.
+static GO: AtomicBool = AtomicBool::new(false);
+
 use bevy::math::Vec3;
 use midair_field::{Node, Op, Operand, Primitive};
 
@@ -17,7 +21,7 @@ fn made(asked: Asked) -> Option<OnCard> {
 fn the_processor_is_asked_where_it_was_chosen() {
     let backend = Backend::forced(Choice::Processor);
     assert!(matches!(
-        backend.make(&ball(0.1), 0.01, &(), &|_| ()),
+        backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO),
         Asked::Processor
     ));
     backend.follow(Choice::Card);
@@ -28,7 +32,7 @@ fn the_processor_is_asked_where_it_was_chosen() {
 fn nobody_waits_for_a_card_that_is_optional() {
     let backend = Backend::following(Choice::Auto);
     assert!(matches!(
-        backend.make(&ball(0.1), 0.01, &(), &|_| ()),
+        backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO),
         Asked::Processor
     ));
 }
@@ -36,7 +40,7 @@ fn nobody_waits_for_a_card_that_is_optional() {
 #[test]
 fn a_lost_card_is_told_once_and_the_processor_goes_on() {
     let backend = Backend::forced(Choice::Card);
-    let Some(first) = made(backend.make(&ball(0.1), 0.01, &(), &|_| ())) else {
+    let Some(first) = made(backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO)) else {
         // No adapter, not even software: said, and left to the processor.
         assert!(backend.says().contains("processor"), "{}", backend.says());
         eprintln!("skipped: {}", backend.says());
@@ -45,10 +49,10 @@ fn a_lost_card_is_told_once_and_the_processor_goes_on() {
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
     assert!((first.mesh.volume() / exact - 1.0).abs() < 0.02);
     // The next takes over its buffers.
-    let second = made(backend.make(&ball(0.12), 0.01, &(), &|_| ())).unwrap();
+    let second = made(backend.make(&ball(0.12), 0.01, &(), &Early::default(), &GO)).unwrap();
     assert!(second.mesh.volume() > 1.5 * first.mesh.volume());
     backend.lose();
-    assert!(made(backend.make(&ball(0.1), 0.01, &(), &|_| ())).is_none());
+    assert!(made(backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO)).is_none());
     let [line] = &backend.untold()[..] else {
         panic!("it is told once");
     };
@@ -57,7 +61,7 @@ fn a_lost_card_is_told_once_and_the_processor_goes_on() {
         "{line}"
     );
     assert!(matches!(
-        backend.make(&ball(0.1), 0.01, &(), &|_| ()),
+        backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO),
         Asked::Processor
     ));
     assert!(backend.untold().is_empty());
@@ -75,7 +79,7 @@ fn a_sketch_that_finds_no_memory_is_told_once() {
     let card = backend.in_use().unwrap();
     card.starve(Some(1024));
     assert!(backend.sketch(&ball(0.2), 0.01, &(), Some(solid)).is_none());
-    assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_none());
+    assert!(made(backend.make(&ball(0.2), 0.01, &(), &Early::default(), &GO)).is_none());
     let [line] = &backend.untold()[..] else {
         panic!("it is told once");
     };
@@ -85,7 +89,7 @@ fn a_sketch_that_finds_no_memory_is_told_once() {
     );
     card.starve(None);
     assert!(backend.sketch(&ball(0.2), 0.01, &(), None).is_some());
-    assert!(made(backend.make(&ball(0.2), 0.01, &(), &|_| ())).is_some());
+    assert!(made(backend.make(&ball(0.2), 0.01, &(), &Early::default(), &GO)).is_some());
     assert!(backend.untold().is_empty());
 }
 
@@ -111,7 +115,7 @@ fn an_edit_makes_a_part_again_whatever_was_made_between() {
         ]))
     };
     let renewed = |half: f32, x: f32, step: f32| {
-        made(backend.make(&dabbed(half, x), step, &(), &|_| ()))?;
+        made(backend.make(&dabbed(half, x), step, &(), &Early::default(), &GO))?;
         let kept = backend.0.kept.lock().unwrap();
         let last = kept.last().unwrap();
         Some((last.renewed(), last.memory().bricks))
@@ -165,7 +169,7 @@ fn a_card_that_cannot_be_opened_is_told_once() {
         let backend = Backend::forced(Choice::Card);
         *backend.0.broken.lock().unwrap() = Some(error);
         for _ in 0..2 {
-            assert!(made(backend.make(&ball(0.1), 0.01, &(), &|_| ())).is_none());
+            assert!(made(backend.make(&ball(0.1), 0.01, &(), &Early::default(), &GO)).is_none());
             assert!(backend.sketch(&ball(0.1), 0.01, &(), None).is_none());
         }
         let [line] = &backend.untold()[..] else {
