@@ -451,3 +451,40 @@ fn a_blob_cuts_a_cube_and_becomes_a_component() {
     assert!((again / left - 1.0).abs() < 0.01, "{again}, not {left}");
     assert_eq!(s.warnings(), [] as [String; 0]);
 }
+
+/// Nobody presses both triggers at once: the other hand's is held first, for as long as it takes to aim.
+#[test]
+fn the_other_hands_trigger_erases_however_long_it_is_held() {
+    for skeleton in ["Point", "Line", "Polygon", "Volume"] {
+        let mut s = painter("Point");
+        drag(&mut s, HERE, HERE + Vec3::X * 0.3);
+        let before = s.undo_len();
+        set(&mut s, "brush.skeleton", &format!("\"{skeleton}\""));
+        s.press(Side::Left, Action::Act);
+        s.frames(90);
+        s.reach(Side::Right, HERE + Vec3::X * 0.15);
+        s.frames(90);
+        set(&mut s, "brush.skeleton", "\"Point\"");
+        s.click(Side::Right, Action::Act);
+        s.let_go(Side::Left, Action::Act);
+        s.frames(2);
+        let painted = strokes(&s);
+        assert_eq!(s.undo_len(), before + 1, "{skeleton}");
+        assert!(painted.strokes[1].erase, "{skeleton}");
+        let at = painted.strokes[1].skeleton.clone();
+        let Skeleton::Points(points) = at else {
+            panic!("a point")
+        };
+        assert!(points[0].truncate().distance(Vec3::X * 0.15) < 1e-4);
+    }
+    // A hand that goes on paints, whichever it is.
+    let mut s = painter("Point");
+    s.press(Side::Left, Action::Act);
+    let at = s.pose(Side::Left).position;
+    s.put(Side::Left, Pose::at(at + Vec3::Y * 0.2));
+    s.frames(40);
+    s.click(Side::Right, Action::Act);
+    s.let_go(Side::Left, Action::Act);
+    assert_eq!(strokes(&s).strokes.len(), 1);
+    assert!(!strokes(&s).strokes[0].erase);
+}

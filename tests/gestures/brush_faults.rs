@@ -154,3 +154,30 @@ fn a_stroke_with_a_volume_is_called_as_the_library_calls_it() {
     };
     assert_eq!(called(&painted, shelf), "Cat");
 }
+
+#[test]
+fn a_mesh_pressed_before_its_ghost_is_there_paints_nothing_and_says_so() {
+    let cube = "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\n\
+        f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let mut s = painter("Volume", 0.03);
+    let path = s.home.path().join("box.obj");
+    std::fs::write(&path, cube).unwrap();
+    s.ask(Command::Import(vec![path]));
+    s.settle();
+    s.put(Side::Right, Pose::at(HERE));
+    s.frames(1);
+    // In the frame in which it is chosen, nothing of it is made.
+    let before = s.warnings().len();
+    s.send(Ask::Volume("own/box".into()).command());
+    s.press(Side::Right, Action::Act);
+    s.let_go(Side::Right, Action::Act);
+    assert!(s.document().is_empty());
+    let told = &s.warnings()[before..];
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("still being made ready"), "{told:?}");
+    s.settle();
+    s.frames(2);
+    s.click(Side::Right, Action::Act);
+    s.settle();
+    s.faultless(s.only(), 0.01);
+}

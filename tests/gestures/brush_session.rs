@@ -126,6 +126,53 @@ fn a_figure_by_gamepad_alone_plays_back_to_the_same_bytes() {
     assert_eq!(report.pieces, 1);
 }
 
+#[test]
+fn by_gamepad_a_stroke_is_changed_later_and_erased_from() {
+    let mut desk = Desk::new();
+    desk.plug();
+    desk.take_brush();
+    for x in [-0.15, 0.15] {
+        desk.aim(Vec3::new(x, 0.2, 0.0));
+        desk.tap(Button::RightTrigger2);
+        desk.settle();
+    }
+    let strokes = |d: &Desk| {
+        let (_, object) = d.document().objects().next().expect("a painting");
+        canvas(object).expect("a painting").strokes.clone()
+    };
+    let before = strokes(&desk);
+    assert_eq!(before.len(), 2);
+    // Finish on it selects it; the trigger drags it, the cross resizes and weighs it.
+    desk.point(Vec3::new(0.15, 0.2, 0.0));
+    desk.tap(Button::South);
+    let selected = |d: &Desk| d.world().resource::<midair_brush::Easel>().selected;
+    assert_eq!(selected(&desk), Some(1));
+    desk.down(Button::RightTrigger2);
+    desk.aim(Vec3::new(0.15, 0.35, 0.0));
+    desk.up(Button::RightTrigger2);
+    desk.settle();
+    let moved = strokes(&desk)[1].placement.translation - before[1].placement.translation;
+    assert!(moved.y > 0.1, "{moved}");
+    desk.tap(Button::DPadUp);
+    desk.tap(Button::DPadRight);
+    let changed = &strokes(&desk)[1];
+    assert!(changed.placement.scale.x > 1.1 && changed.weight > 1.1 * before[1].weight);
+    for _ in 0..2 {
+        desk.tap(Button::RightThumb);
+    }
+    desk.settle();
+    assert_eq!(strokes(&desk), before[..1]);
+    assert_eq!(selected(&desk), None);
+    // A held turns the trigger around.
+    desk.aim(Vec3::new(-0.15, 0.22, 0.0));
+    desk.down(Button::South);
+    desk.tap(Button::RightTrigger2);
+    desk.up(Button::South);
+    desk.settle();
+    assert_eq!(strokes(&desk).len(), 2);
+    assert!(strokes(&desk)[1].erase);
+}
+
 /// 3DBrushVR Fig. 6, at the scale of its Fig. 4.
 #[test]
 fn the_sagittarius_is_one_closed_piece() {

@@ -24,6 +24,9 @@ const HOLD: f32 = 0.35;
 /// Seconds within which the trigger of the other hand makes of this one's the one that turns around.
 const YOUNG: f32 = 0.35;
 
+/// Metres within which a hand that holds its trigger rests.
+const RESTS: f32 = 0.02;
+
 /// Seconds each arm of the cross has been held.
 #[derive(Resource, Default)]
 pub(crate) struct Holding([f32; 2]);
@@ -180,7 +183,9 @@ fn step(
                 // Both in one frame: the other hand's is the one that turns around.
                 draft.set(other, Phase::Alt);
                 turned = true;
-            } else if draft.busy() == Some(other) && draft.age < YOUNG {
+            } else if draft.busy() == Some(other)
+                && (draft.age < YOUNG || rests(other, hands, draft, studio))
+            {
                 draft.drop_all();
                 draft.set(other, Phase::Alt);
                 turned = true;
@@ -216,6 +221,13 @@ fn step(
         return None;
     }
     Some(end(side, hand, hands, draft, studio))
+}
+
+/// Whether a hand whose trigger is down has gone nowhere since.
+pub(crate) fn rests(side: Side, hands: &Hands, draft: &Draft, studio: &Studio) -> bool {
+    let near = f32::max(0.5 * studio.brush().radius, RESTS) / hands.metres_per_world;
+    let hand = hands.get(side);
+    hand.held(Action::Act) && draft.rests(side, hand.pose.position, near)
 }
 
 /// A trigger goes down.
@@ -255,6 +267,7 @@ fn press(
         return Some(pick(at, studio));
     }
     draft.age = 0.0;
+    draft.from = at;
     if let Some(selected) = studio.easel.selected {
         let document = studio.project.document();
         let before = studio
@@ -284,7 +297,14 @@ fn press(
         BrushSkeleton::Line => Phase::Line { from: at },
         BrushSkeleton::Polygon => Phase::Polygon { corners: vec![at] },
         BrushSkeleton::Volume => {
-            if let Err(fault) = studio.volume() {
+            let fault = match studio.volume() {
+                Ok((name, recipe)) => studio
+                    .easel
+                    .is_unknown(&recipe)
+                    .then_some(StrokeFault::NotReady(name)),
+                Err(fault) => Some(fault),
+            };
+            if let Some(fault) = fault {
                 studio.notices.warn(fault.to_string());
                 return Some(Haptic::Refused);
             }

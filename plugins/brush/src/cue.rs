@@ -18,6 +18,7 @@ use crate::{
 pub(crate) fn aim(studio: Studio, draft: Res<Draft>, mut aim: ResMut<Aim>) {
     let mut next = Aim {
         draws: true,
+        alt_acts: true,
         level: studio.settings.brush.skeleton == BrushSkeleton::Volume,
         ..default()
     };
@@ -146,5 +147,13 @@ pub(crate) fn hints(
             None => {}
         }
     }
+    next.pair([Action::Up, Action::Down], "size").pair(
+        [Action::Left, Action::Right],
+        if studio.easel.selected.is_some() {
+            "weight"
+        } else {
+            "brush"
+        },
+    );
     hints.set_if_neq(next);
 }

@@ -17,6 +17,8 @@ pub struct Easel {
     pub picking: bool,
     /// A solid that turned out to enclose nothing: no brush.
     pub(crate) hollow: Option<RecipeHash>,
+    /// A mesh that turned out to enclose something.
+    pub(crate) full: Option<RecipeHash>,
     /// A solid that was carried in as a brush, and what it is called.
     pub carried: Option<(String, Recipe)>,
     /// Which object that is: what is painted with it follows it.
@@ -34,6 +36,11 @@ pub fn canvas(object: &Object) -> Option<&Canvas> {
 }
 
 impl Easel {
+    /// Whether nobody knows yet that a brush encloses something: a mesh may be open, and its ghost is not made.
+    pub(crate) fn is_unknown(&self, brush: &Recipe) -> bool {
+        self.full != Some(brush.hash()) && !brush.meshes().is_empty()
+    }
+
     /// The painting as the document has it.
     pub fn painting<'a>(
         &self,

@@ -11,6 +11,7 @@ use midair_studio::{
 };
 
 use crate::{
+    act,
     phase::{Draft, Phase},
     stroke,
     work::Studio,
@@ -64,10 +65,12 @@ pub(crate) fn show(
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut commands: Commands,
 ) {
-    let side = draft
-        .busy()
-        .or(draft.leading)
-        .unwrap_or(studio.settings.hands.main());
+    let main = studio.settings.hands.main();
+    let side = match draft.busy() {
+        // Held where it went down, the other hand's trigger turns around what this one will do.
+        Some(off) if off != main && act::rests(off, &hands, &draft, &studio) => main,
+        busy => busy.or(draft.leading).unwrap_or(main),
+    };
     let hand = hands.get(side);
     let editing = studio.easel.selected.is_some() || studio.easel.picking;
     let alt = *draft.phase(side.other()) == Phase::Alt
@@ -75,14 +78,14 @@ pub(crate) fn show(
             .get(side.other())
             .held(midair_studio::hands::Action::Act);
     let brush = studio.brush();
-    let erase = if draft.busy().is_some() {
+    let erase = if draft.busy() == Some(side) {
         draft.erase
     } else {
         brush.erase != alt
     };
     let radius = brush.radius / hands.metres_per_world;
     let seen = hand.tracked && held.get(side).is_none() && !editing;
-    let mut hollow = None;
+    let (mut hollow, mut full) = (None, None);
     let at = match brush.skeleton {
         _ if !seen => None,
         BrushSkeleton::Volume => studio.volume().ok().and_then(|(_, recipe)| {
@@ -102,6 +105,7 @@ pub(crate) fn show(
                 hollow = Some(recipe.hash());
                 return None;
             }
+            full = Some(recipe.hash());
             let mesh = drawn.handle(key, &made, &mut meshes);
             let at = stroke::held(&recipe, &hand.pose, size);
             Some((mesh, transform(&at)))
@@ -109,7 +113,7 @@ pub(crate) fn show(
         _ => {
             let ball = ghost
                 .ball
-                .get_or_insert_with(|| meshes.add(Sphere::new(1.0)));
+                .get_or_insert_with(|| meshes.add(Sphere::new(1.0).mesh().uv(64, 32)));
             let at =
                 Transform::from_translation(hand.pose.position).with_scale(Vec3::splat(radius));
             Some((ball.clone(), at))
@@ -117,6 +121,9 @@ pub(crate) fn show(
     };
     if hollow.is_some() {
         studio.easel.hollow = hollow;
+    }
+    if full.is_some() && studio.easel.full != full {
+        studio.easel.full = full;
     }
     let Some((mesh, at)) = at else {
         ghost.clear(&mut commands);
@@ -150,6 +157,12 @@ pub(crate) fn show(
     }
 }
 
+/// As far upwards as it goes at a right angle to a way: what is said of a line stands over it.
+fn beside(way: Vec3) -> Vec3 {
+    let up = Vec3::Y.reject_from(way.normalize_or(Vec3::X));
+    up.normalize_or(Vec3::X)
+}
+
 /// Ends, corners and the way of what is begun; the selected stroke.
 pub(crate) fn lines(
     studio: Studio,
@@ -173,8 +186,9 @@ pub(crate) fn lines(
             Phase::Line { from } => {
                 gizmos.line(*from, now, colour);
                 let length = from.distance(now);
+                let radius = studio.brush().radius / hands.metres_per_world;
                 readouts.say(
-                    from.midpoint(now),
+                    from.midpoint(now) + beside(now - *from) * 1.3 * radius,
                     midair_studio::units::length(length, studio.settings.units.length),
                 );
             }

@@ -48,6 +48,8 @@ pub struct Draft {
     pub erase: bool,
     /// Seconds since it was begun.
     pub age: f32,
+    /// Where the hand was then, metres of the world.
+    pub from: Vec3,
     /// The hand that did something last: its ghost is seen.
     pub leading: Option<Side>,
 }
@@ -73,6 +75,16 @@ impl Draft {
         Side::BOTH
             .into_iter()
             .find(|&s| !matches!(self.phase(s), Phase::Idle | Phase::Alt))
+    }
+
+    /// Whether what a hand has begun is where it was begun: its trigger may be meant to turn around what the other does.
+    pub fn rests(&self, side: Side, now: Vec3, near: f32) -> bool {
+        let one = match self.phase(side) {
+            Phase::Leading { .. } | Phase::Line { .. } | Phase::Stamping => true,
+            Phase::Polygon { corners } => corners.len() == 1,
+            Phase::Idle | Phase::Alt | Phase::Moving { .. } => false,
+        };
+        one && self.from.distance(now) < near
     }
 
     /// Everything begun is given up.

@@ -29,6 +29,11 @@ pub enum StrokeFault {
         "\"{0}\" has no volume and cannot be a brush: give it a thickness, or take another one."
     )]
     NoVolume(String),
+    /// A mesh that was not made yet, so that nobody knows whether it encloses anything.
+    #[error(
+        "\"{0}\" is still being made ready as a brush: press again when it is seen at the hand."
+    )]
+    NotReady(String),
     /// A volume brush that is not there.
     #[error("The library has no brush \"{0}\": choose another one on the panel.")]
     NoBrush(String),

@@ -13,18 +13,31 @@ const GAP: f32 = 10.0;
 /// What each button does now, on one line; `more` is what only this way in has, as key and meaning. What stands
 /// first is the most useful; what has no room at the end is left out.
 pub fn hints(ui: &mut Ui, hints: &Hints, names: KeyNames<'_>, more: &[(String, String)]) {
-    let tools = hints.buttons.iter().map(|hint| {
+    let said = |action| {
+        let mut all = hints.buttons.iter();
+        all.any(|h| h.action == HintKey::Action(action))
+    };
+    let tools = hints.buttons.iter().filter_map(|hint| {
         let key = match hint.action {
-            HintKey::Action(action) => names(action),
+            HintKey::Action(action) => {
+                let two = hints.pairs.iter().find(|(two, _)| two.contains(&action));
+                match two.filter(|(two, _)| two.iter().all(|&a| said(a))) {
+                    Some(&([first, second], does)) if action == first => {
+                        return Some((format!("{} {}", names(first), names(second)), does));
+                    }
+                    Some(_) => return None,
+                    None => names(action),
+                }
+            }
             HintKey::Move => "move".to_owned(),
             HintKey::Swipe => "swipe".to_owned(),
         };
-        (key, hint.does.as_str())
+        Some((key, hint.does.as_str()))
     });
     let more = more.iter().map(|(key, does)| (key.clone(), does.as_str()));
     let all: Vec<_> = tools
         .chain(more)
-        .filter(|(key, _)| !key.is_empty())
+        .filter(|(key, _)| !key.trim().is_empty())
         .collect();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;

@@ -1,7 +1,7 @@
 //! Everything that can be set, a page for each part; a new setting has its row at once.
 
 use bevy::prelude::World;
-use bevy_egui::egui::{self, DragValue, Ui};
+use bevy_egui::egui::{self, DragValue, TextStyle, Ui};
 use serde_json::Value;
 
 use super::{Panel, icon, kit};
@@ -146,7 +146,15 @@ impl SettingsPanel {
                 let Some((_, choices)) = CHOICES.iter().find(|(k, _)| *k == key) else {
                     return;
                 };
-                kit::wide_row(ui, NAMES, &label, |ui| {
+                // What one chooses from comes before the room for its name: the panel stays as wide as it is.
+                let spacing = ui.spacing();
+                let around = 2.0 * spacing.button_padding.x + spacing.item_spacing.x;
+                let least = spacing.interact_size.x + spacing.item_spacing.x;
+                let wide =
+                    |c: &&str| f32::max(kit::width(ui, c, TextStyle::Button) + around, least);
+                let needs: f32 = choices.iter().map(wide).sum();
+                let names = NAMES.min(ui.available_width() - needs);
+                kit::wide_row(ui, names, &label, |ui| {
                     for &choice in *choices {
                         let is = chosen == choice;
                         if ui.selectable_label(is, choice).clicked() && !is {

@@ -19,6 +19,8 @@ pub struct Aim {
     pub level: bool,
     /// Both hands are led at once: a gamepad's other stick moves the hand that does not lead.
     pub both: bool,
+    /// The other hand's trigger turns around what this one's does: where one button is for the other's, it is both.
+    pub alt_acts: bool,
     /// Points that catch the hand, in world metres.
     pub points: Vec<Vec3>,
     /// Segments that catch it, after the points.
@@ -32,6 +34,7 @@ impl Default for Aim {
             surfaces: true,
             level: false,
             both: false,
+            alt_acts: false,
             points: Vec::new(),
             lines: Vec::new(),
         }

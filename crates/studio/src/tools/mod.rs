@@ -165,6 +165,9 @@ pub struct Hints {
     pub status: String,
     /// The buttons.
     pub buttons: Vec<Hint>,
+    /// Two buttons of these that do one thing this way and that way, and what it is: where all stand in one line they
+    /// are told as one.
+    pub pairs: Vec<([crate::hands::Action; 2], &'static str)>,
 }
 
 impl Hints {
@@ -172,6 +175,13 @@ impl Hints {
     pub fn begin(&mut self, status: impl Into<String>) -> &mut Self {
         self.status = status.into();
         self.buttons.clear();
+        self.pairs.clear();
+        self
+    }
+
+    /// Two buttons that were said do one thing, this way and that way.
+    pub fn pair(&mut self, two: [crate::hands::Action; 2], does: &'static str) -> &mut Self {
+        self.pairs.push((two, does));
         self
     }
 

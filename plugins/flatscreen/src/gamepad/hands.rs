@@ -134,7 +134,7 @@ pub(crate) fn hands(
         }
         commands.write(Command::Place { component, side });
     }
-    pad.write(&controls, &settings, &mut input);
+    pad.write(&controls, &settings, &aim, &mut input);
     pad.held = pad.latched;
     pad.held[side as usize] = pad.grips;
     input.head = Some(Pose {
@@ -263,7 +263,7 @@ impl Pad {
     }
 
     /// What both hands do in this frame.
-    fn write(&self, controls: &Controls, settings: &Settings, input: &mut HandsInput) {
+    fn write(&self, controls: &Controls, settings: &Settings, aim: &Aim, input: &mut HandsInput) {
         let side = self.leading;
         let mut actions: ActionSet = [
             (Control::Finish, Action::Finish),
@@ -278,7 +278,9 @@ impl Pad {
         .filter(|&(control, _)| controls.pressed(control))
         .map(|(_, action)| action)
         .collect();
-        actions.set(Action::Act, controls.pressed_on(Control::Act, Device::Pad));
+        let alt = controls.pressed(Control::Alt);
+        let acts = controls.pressed_on(Control::Act, Device::Pad) || alt && aim.alt_acts;
+        actions.set(Action::Act, acts);
         actions.set(Action::Grab, self.grips);
         for hand in Side::BOTH {
             let mut held = ActionSet::NONE;
@@ -290,10 +292,7 @@ impl Pad {
             };
         }
         let other = side.other();
-        input
-            .side(other)
-            .down
-            .set(Action::Act, controls.pressed(Control::Alt));
+        input.side(other).down.set(Action::Act, alt);
         let main = settings.hands.main();
         for (control, action) in [
             (Control::Menu, Action::Menu),
