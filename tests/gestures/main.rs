@@ -31,6 +31,7 @@ mod references;
 mod rings;
 mod room;
 mod scaffold;
+mod scaffold_faults;
 mod scaffold_flat;
 mod scaffold_session;
 mod sequence;
