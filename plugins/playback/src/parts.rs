@@ -82,7 +82,7 @@ pub struct PartsPlugin;
 
 impl Plugin for PartsPlugin {
     fn build(&self, app: &mut App) {
-        use StudioSet::{Act, Ask, Commit, Cue, Gather, Pick, Rebuild};
+        use StudioSet::{Act, Ask, Commit, Cue, Gather, Hold, Pick, Rebuild};
         app.insert_resource(Parts {
             since: Instant::now(),
             began: Instant::now(),
@@ -99,7 +99,8 @@ impl Plugin for PartsPlugin {
         .add_systems(Update, end::<1>.after(Gather).before(Ask))
         .add_systems(Update, end::<2>.after(Ask).before(Pick))
         .add_systems(Update, end::<3>.after(Pick).before(Act))
-        .add_systems(Update, end::<4>.after(Act).before(Commit))
+        // What hands do in every mode alike counts as acting.
+        .add_systems(Update, end::<4>.after(Act).after(Hold).before(Commit))
         .add_systems(Update, end::<5>.after(Commit).before(Rebuild))
         .add_systems(Update, end::<6>.after(Rebuild).before(Cue))
         .add_systems(Update, end::<7>.after(Cue))
@@ -142,6 +143,7 @@ mod tests {
                 StudioSet::Ask,
                 StudioSet::Pick,
                 StudioSet::Act,
+                StudioSet::Hold,
                 StudioSet::Commit,
                 StudioSet::Rebuild,
                 StudioSet::Cue,
