@@ -131,3 +131,18 @@ fn what_cannot_be_had_says_why() {
         );
     }
 }
+
+#[test]
+fn a_disk_that_keeps_no_volume_is_told_of_once() {
+    let (dir, _) = home();
+    let file = dir.path().join("taken");
+    std::fs::write(&file, "no folder").unwrap();
+    let volumes = Volumes::with_cache(BakeCache::new(file), 64 << 20);
+    assert!(volumes.take_warning().is_none());
+    volumes
+        .bake(&tetrahedron(0.4), 0.01, &Progress::new())
+        .unwrap();
+    let line = volumes.take_warning().unwrap();
+    assert!(line.contains("taken"), "{line}");
+    assert!(volumes.take_warning().is_none());
+}

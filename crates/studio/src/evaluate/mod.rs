@@ -335,6 +335,12 @@ fn deliver(
     for line in evaluations.backend.untold() {
         notices.warn(line);
     }
+    // What was baked and could not be kept is baked again in each run.
+    if evaluations.running.iter().any(Running::is_finished)
+        && let Some(line) = evaluations.volumes.take_warning()
+    {
+        notices.warn(line);
+    }
     evaluations.take_in(&delivery, &mut delivered.0, &mut notices);
     evaluations.drop_stale();
 }
