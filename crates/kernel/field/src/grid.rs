@@ -1,7 +1,6 @@
 use std::sync::Arc;
 
-use glam::{IVec3, Vec3};
-use midair_mesh::Aabb;
+use glam::IVec3;
 use rustc_hash::FxHashMap;
 
 /// Nodes along one side of a brick.
@@ -99,12 +98,6 @@ impl Grid {
     /// Metres between neighbouring nodes.
     pub fn step(&self) -> f32 {
         self.step
-    }
-
-    /// Where a brick's nodes lie, first to last.
-    pub fn brick_box(&self, c: BrickCoord) -> Aabb {
-        let low = c.as_vec3() * BRICK as f32;
-        Aabb::new(low * self.step, (low + Vec3::splat(7.0)) * self.step)
     }
 
     /// The brick at `c`, if it is not wholly outside.

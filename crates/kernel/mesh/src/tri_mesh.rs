@@ -106,11 +106,6 @@ impl Aabb {
         Self::new(self.min - by, self.max + by)
     }
 
-    /// Whether the boxes share a point.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
-    }
-
     /// Distance from `p` to the box; 0 inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         (self.min - p).max(p - self.max).max(Vec3::ZERO).length()

@@ -116,36 +116,6 @@ impl Drawing {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// What a ray passes within `radians` of, the nearest to the eye. `direction` is of unit length.
-    pub fn along_ray(&self, eye: DVec3, direction: DVec3, radians: f64) -> Option<OnDrawing> {
-        let lines = self.lines.iter().map(|l| (l.id, l.a, l.b, 0.0));
-        let strokes = self.strokes.iter().filter(|s| {
-            // A cone that misses the ball around its box misses it.
-            let middle = s.low.midpoint(s.high);
-            let ball = 0.5 * s.low.distance(s.high) + s.radius;
-            let along = (middle - eye).dot(direction);
-            along > -ball
-                && (middle - eye - direction * along).length() <= ball + along.max(0.0) * radians
-        });
-        let strokes = strokes.flat_map(|s| {
-            let piece = |p: &[DVec3]| (s.id, p[0], p[1], s.radius);
-            s.points.windows(2).map(piece).collect::<Vec<_>>()
-        });
-        lines
-            .chain(strokes)
-            .filter_map(|(id, a, b, radius)| {
-                let point = nearest_to_ray(eye, direction, a, b)?;
-                let along = (point - eye).dot(direction);
-                let off = (point - eye - direction * along).length() - radius;
-                (along > 0.01 && off <= along * radians).then_some(OnDrawing {
-                    id,
-                    point,
-                    distance: along,
-                })
-            })
-            .min_by(|a, b| a.distance.total_cmp(&b.distance))
-    }
-
     /// Follows the document. Construction lines that are hidden are not there.
     pub fn follow(&mut self, document: &Document, lines: LinesShown) {
         self.lines.clear();
@@ -209,20 +179,6 @@ pub fn on_piece(to: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     a + along * t.clamp(0.0, 1.0)
 }
 
-/// The point of a straight piece that a ray passes nearest to; `None` where that is behind the eye.
-pub fn nearest_to_ray(eye: DVec3, direction: DVec3, a: DVec3, b: DVec3) -> Option<DVec3> {
-    let (along, from) = (b - a, a - eye);
-    let (d, e) = (along.dot(direction), along.length_squared());
-    let below = e - d * d;
-    let t = if below > 1e-12 * e.max(1e-300) {
-        (d * from.dot(direction) - along.dot(from)) / below
-    } else {
-        0.0
-    };
-    let point = a + along * t.clamp(0.0, 1.0);
-    ((point - eye).dot(direction) > 0.0).then_some(point)
-}
-
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Drawing>().add_systems(
         Update,
@@ -263,17 +219,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_is_found_from_a_point_and_along_a_ray() {
+    fn what_is_drawn_is_found_from_a_point() {
         let mut drawing = Drawing::default();
         drawing.follow(&drawn(), LinesShown::Shown);
         assert_eq!(drawing.keypoints().count(), 4);
         let found = drawing.nearest(DVec3::new(0.4, 0.01, 0.0), 0.02).unwrap();
         assert_eq!((found.id, found.point), (ObjectId(1), DVec3::X * 0.4));
         assert!(drawing.nearest(DVec3::new(0.4, 0.5, 0.0), 0.02).is_none());
-        let eye = DVec3::new(0.005, 0.5, 3.0);
-        let found = drawing.along_ray(eye, DVec3::NEG_Z, 0.01).unwrap();
-        assert_eq!(found.id, ObjectId(2));
-        assert!(drawing.along_ray(eye, DVec3::Z, 0.01).is_none());
         drawing.follow(&drawn(), LinesShown::Hidden);
         assert!(drawing.lines().is_empty() && drawing.strokes().len() == 1);
     }

@@ -48,11 +48,6 @@ impl Image {
             translation: Vec3A::ZERO,
         }
     }
-
-    /// Whether left and right change places in it, so that triangles are to be turned round.
-    pub fn is_mirrored(&self) -> bool {
-        self.mirror.is_some()
-    }
 }
 
 fn flip(axis: Axis) -> Vec3 {

@@ -42,7 +42,7 @@ const ROUNDS: usize = 12;
 /// apart within a step, the chamfer stays.
 #[must_use]
 pub fn crisp(mesh: TriMesh, program: &Program) -> TriMesh {
-    sharpened(&mesh, program, &AtomicBool::new(false))
+    crisp_unless(&mesh, program, &AtomicBool::new(false))
         .ok()
         .flatten()
         .unwrap_or(mesh)
@@ -54,14 +54,6 @@ pub fn crisp(mesh: TriMesh, program: &Program) -> TriMesh {
 ///
 /// [`Cancelled`].
 pub fn crisp_unless(
-    mesh: &TriMesh,
-    program: &Program,
-    cancel: &AtomicBool,
-) -> Result<Option<TriMesh>, Cancelled> {
-    sharpened(mesh, program, cancel)
-}
-
-fn sharpened(
     mesh: &TriMesh,
     program: &Program,
     cancel: &AtomicBool,
