@@ -2,14 +2,17 @@
 
 use std::collections::HashSet;
 
-use bevy::input::keyboard::Key;
+use bevy::input::keyboard::{Key, NativeKey};
 use bevy::prelude::*;
 use midair_flatscreen::bindings::{Binding, Bindings, Control, Device};
 use midair_studio::panel::egui::Id;
 use midair_studio::panel::{Dock, Panels};
+use midair_studio::project::Project;
 use midair_studio::settings::Settings;
 
 use crate::desk::Desk;
+
+const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
 
 impl Desk {
     fn panel(&mut self, id: &str, open: bool) {
@@ -87,6 +90,34 @@ fn f6_goes_round_and_escape_leaves_and_tab_stays_the_hands() {
     assert_ne!(desk.focus().spot(), Some(first));
     desk.strike_one(KeyCode::Escape);
     assert!(!desk.focus().is_inside());
+}
+
+/// A frame that takes long has all of a quick Ctrl+D in it but the first key: it must not become D.
+#[test]
+fn a_chord_that_ends_within_one_frame_is_still_a_chord() {
+    let mut desk = Desk::new();
+    let first = desk.thing("solid/cube");
+    desk.wait(3);
+    desk.key(KeyCode::ControlLeft, Key::Control, true);
+    desk.frame();
+    for (code, down) in [(KeyCode::KeyZ, true), (KeyCode::KeyZ, false)] {
+        desk.key(code, PLAIN, down);
+    }
+    desk.key(KeyCode::ControlLeft, Key::Control, false);
+    desk.wait(3);
+    let document = desk.world().resource::<Project>().document();
+    assert!(document.object(first).is_none(), "undone");
+    // What comes after the modifier is up is no chord.
+    let second = desk.thing("solid/cube");
+    desk.key(KeyCode::ControlLeft, Key::Control, true);
+    desk.frame();
+    desk.key(KeyCode::ControlLeft, Key::Control, false);
+    for (code, down) in [(KeyCode::KeyZ, true), (KeyCode::KeyZ, false)] {
+        desk.key(code, PLAIN, down);
+    }
+    desk.wait(3);
+    let document = desk.world().resource::<Project>().document();
+    assert!(document.object(second).is_some());
 }
 
 #[test]

@@ -6,7 +6,7 @@ use midair_studio::{
     panel::{
         AddPanel, Dock, Panel, PanelInfo,
         egui::{self, RichText, Ui},
-        icon,
+        icon, kit,
     },
     settings::Settings,
 };
@@ -79,11 +79,7 @@ impl Panel for ControlsPanel {
 impl ControlsPanel {
     fn head(&mut self, ui: &mut Ui, world: &World, asks: &mut Vec<Command>) {
         ui.horizontal(|ui| {
-            ui.add(
-                egui::TextEdit::singleline(&mut self.query)
-                    .hint_text("Search by name or key")
-                    .desired_width(WORDS - 16.0),
-            );
+            kit::search(ui, &mut self.query, "Find by name or key", WORDS - 16.0);
             let mut left = world.resource::<Settings>().hands.left_handed;
             if ui
                 .checkbox(&mut left, "Left-handed")

@@ -5,8 +5,11 @@ use bevy::prelude::World;
 use super::Keys;
 use crate::command::Command;
 use crate::panel::egui::{self, RichText, Ui};
-use crate::panel::{Panel, icon};
+use crate::panel::{Panel, icon, kit};
 use crate::project::Places;
+
+/// Points for the keys.
+const KEYS: f32 = 150.0;
 
 #[derive(Default)]
 pub(super) struct Help {
@@ -19,8 +22,7 @@ impl Panel for Help {
         let keys = world.resource::<Keys>();
         ui.set_min_width(ui.available_width().min(480.0));
         ui.horizontal_wrapped(|ui| {
-            let field = egui::TextEdit::singleline(&mut self.query).hint_text("Find a key");
-            ui.add(field.desired_width(200.0));
+            kit::search(ui, &mut self.query, "Find by name or key", 200.0);
             for (text, id) in [("Tutorial", "tutorial"), ("Change keys…", "controls")] {
                 if ui.button(text).clicked() {
                     asks.push(Command::Panel {
@@ -52,18 +54,26 @@ impl Help {
                 ui.add_space(4.0);
                 ui.label(RichText::new(group).strong());
             }
-            ui.horizontal_wrapped(|ui| {
-                ui.add_sized(
-                    [180.0, 18.0],
-                    egui::Label::new(RichText::new(bound).monospace()),
-                );
-                ui.label(line.does);
+            ui.horizontal_top(|ui| {
+                column(ui, KEYS, RichText::new(bound).monospace());
+                // What does not fit goes on below its own beginning, not below the keys.
+                let rest = ui.available_width();
+                column(ui, rest, RichText::new(line.does));
             });
         }
         if group.is_empty() {
             ui.label("No key is called that. Change keys… lists everything that can be bound.");
         }
     }
+}
+
+/// Text in a column of its own, so many points wide.
+fn column(ui: &mut Ui, width: f32, text: RichText) {
+    let down = egui::Layout::top_down(egui::Align::Min);
+    ui.allocate_ui_with_layout(egui::vec2(width, 0.0), down, |ui| {
+        ui.set_width(width);
+        ui.add(egui::Label::new(text).wrap());
+    });
 }
 
 /// What one is asked for when something does not work.

@@ -74,10 +74,7 @@ pub(super) fn save(
             hands.pulse(side, Haptic::Done);
         }
         None => {
-            let hand = if side == Side::Left { "left" } else { "right" };
-            notices.info(format!(
-                "Touch what to save with the {hand} hand, then press save."
-            ));
+            notices.info("Nothing is saved yet: point at what to save, then press the same again.");
             hands.pulse(side, Haptic::Refused);
         }
     }

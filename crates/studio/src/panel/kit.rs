@@ -1,8 +1,8 @@
 //! The parts that panels are made of, so that the same thing looks the same everywhere.
 
 use bevy_egui::egui::{
-    Align, Button, Context, FontFamily, Id, Label, Layout, Response, RichText, Sense, Stroke,
-    StrokeKind, TextStyle, Ui, Vec2, Widget, WidgetInfo, WidgetType,
+    Align, Button, Context, FontFamily, Id, Label, Layout, Margin, Response, RichText, Sense,
+    Stroke, StrokeKind, TextEdit, TextStyle, Ui, Vec2, Widget, WidgetInfo, WidgetType,
 };
 
 use super::style::{FILLED, Palette, STRONG, UNIT};
@@ -25,6 +25,15 @@ pub fn icon_button(ui: &mut Ui, glyph: &str, does: &str, on: bool) -> Response {
     let response = ui.add(button).on_hover_text(does);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), does));
     response
+}
+
+/// A field for what one looks for, so many points wide.
+pub fn search(ui: &mut Ui, query: &mut String, hint: &str, width: f32) -> Response {
+    let field = TextEdit::singleline(query)
+        .hint_text(format!("{}  {hint}", super::icon::MAGNIFYING_GLASS))
+        .margin(Margin::symmetric(8, 6))
+        .desired_width(width);
+    ui.add(field)
 }
 
 /// What stands where nothing is yet, and what to do about it.

@@ -40,7 +40,40 @@ pub(super) struct LibraryPanel {
     host: Option<egui::Context>,
     /// The rectangle the panel had in the last frame.
     shown: Option<Rect>,
+    grid: Grid,
 }
+
+/// How the tiles lay in the last frame.
+#[derive(Clone, Copy, Default)]
+struct Grid {
+    columns: usize,
+    /// Height of a row with the gap after it, and of a heading.
+    row: f32,
+    heading: f32,
+    scrolled: f32,
+    /// Headings and rows of what was used before and of favourites, above all others.
+    above: Option<(usize, usize)>,
+}
+
+impl Grid {
+    /// How high those sections are that change as one works.
+    fn above(&self, sections: &[Section]) -> Option<(usize, usize)> {
+        let changing = sections
+            .iter()
+            .take_while(|s| [RECENT, FAVOURITES].contains(&s.title));
+        // Where there is no heading there is one section, which is what was asked for.
+        let all = sections.first().is_some_and(|s| !s.title.is_empty());
+        all.then(|| {
+            changing.fold((0, 0), |(headings, rows), s| {
+                let own = s.components.len().div_ceil(self.columns.max(1));
+                (headings + 1, rows + own)
+            })
+        })
+    }
+}
+
+const RECENT: &str = "Recent";
+const FAVOURITES: &str = "Favourites";
 
 /// So many pictures are kept on the graphics card: more than fit on a screen.
 const TEXTURES: usize = 512;
@@ -53,6 +86,7 @@ impl Default for LibraryPanel {
             textures: Bounded::new(TEXTURES),
             host: None,
             shown: None,
+            grid: Grid::default(),
         }
     }
 }
@@ -80,11 +114,8 @@ impl Panel for LibraryPanel {
             let button = kit::width(ui, icon::STACK_PLUS, egui::TextStyle::Button)
                 + 2.0 * ui.spacing().button_padding.x
                 + ui.spacing().item_spacing.x;
-            let search = egui::TextEdit::singleline(&mut self.query)
-                .hint_text(format!("{}  Search", icon::MAGNIFYING_GLASS))
-                .margin(egui::Margin::symmetric(8, 6))
-                .desired_width(ui.available_width() - 2.0 * button - 2.0);
-            ui.add(search);
+            let width = ui.available_width() - 2.0 * button - 2.0;
+            kit::search(ui, &mut self.query, "Search", width);
             let import = ui.button(icon::DOWNLOAD_SIMPLE);
             if import
                 .on_hover_text("Bring in meshes of your own: GLB, OBJ, STL, PLY")
@@ -196,11 +227,11 @@ impl LibraryPanel {
             Category::All => {
                 let mut sections = vec![
                     Section {
-                        title: "Recent",
+                        title: RECENT,
                         components: named(&settings.shelf.recent),
                     },
                     Section {
-                        title: "Favourites",
+                        title: FAVOURITES,
                         components: named(&settings.shelf.favourites),
                     },
                 ];
@@ -243,40 +274,58 @@ impl LibraryPanel {
             Category::Named(name) => name,
         };
         // Each begins at its own top.
-        egui::ScrollArea::vertical()
+        let mut area = egui::ScrollArea::vertical()
             .id_salt(shown.to_owned())
-            .auto_shrink([false, false])
-            .show(ui, |ui| {
-                let gap = 6.0;
-                let room = ui.available_width() - 4.0;
-                let columns = ((room + gap) / (tile + gap)).floor().max(1.0);
-                let side = ((room + gap) / columns - gap).min(2.0 * tile);
-                ui.spacing_mut().item_spacing = vec2(gap, gap);
-                for section in sections {
-                    if !section.title.is_empty() {
-                        ui.add_space(6.0);
-                        ui.label(RichText::new(section.title).strong());
-                    }
-                    for row in section.components.chunks(columns as usize) {
-                        let size = vec2(side, side + 18.0);
-                        // Rows out of sight take their place and are not drawn.
-                        let place = Rect::from_min_size(ui.cursor().min, vec2(room, size.y));
-                        if !ui.is_rect_visible(place) {
-                            ui.allocate_space(place.size());
-                            continue;
-                        }
-                        ui.horizontal(|ui| {
-                            for component in row {
-                                let response = self.tile(ui, world, component, size);
-                                if std::mem::take(&mut first) {
-                                    kit::begin_at(ui.ctx(), "library", response.id);
-                                }
-                                self.act(response, world, component, asks);
-                            }
-                        });
-                    }
+            .auto_shrink([false, false]);
+        let mut grid = self.grid;
+        let above = grid.above(sections);
+        // The tile under the pointer stays there when what was just used appears above it.
+        if let (Some(now), Some(before)) = (above, grid.above)
+            && now != before
+            && ui.rect_contains_pointer(ui.max_rect())
+        {
+            let more = |now: usize, before: usize| now as f32 - before as f32;
+            let by = more(now.0, before.0) * grid.heading + more(now.1, before.1) * grid.row;
+            area = area.vertical_scroll_offset((grid.scrolled + by).max(0.0));
+        }
+        grid.above = above;
+        let output = area.show(ui, |ui| {
+            let gap = 6.0;
+            let room = ui.available_width() - 4.0;
+            let columns = ((room + gap) / (tile + gap)).floor().max(1.0);
+            let side = ((room + gap) / columns - gap).min(2.0 * tile);
+            ui.spacing_mut().item_spacing = vec2(gap, gap);
+            grid.columns = columns as usize;
+            grid.row = side + 18.0 + gap;
+            for section in sections {
+                let top = ui.cursor().top();
+                if !section.title.is_empty() {
+                    ui.add_space(6.0);
+                    ui.label(RichText::new(section.title).strong());
+                    grid.heading = ui.cursor().top() - top;
                 }
-            });
+                for row in section.components.chunks(columns as usize) {
+                    let size = vec2(side, side + 18.0);
+                    // Rows out of sight take their place and are not drawn.
+                    let place = Rect::from_min_size(ui.cursor().min, vec2(room, size.y));
+                    if !ui.is_rect_visible(place) {
+                        ui.allocate_space(place.size());
+                        continue;
+                    }
+                    ui.horizontal(|ui| {
+                        for component in row {
+                            let response = self.tile(ui, world, component, size);
+                            if std::mem::take(&mut first) {
+                                kit::begin_at(ui.ctx(), "library", response.id);
+                            }
+                            self.act(response, world, component, asks);
+                        }
+                    });
+                }
+            }
+        });
+        grid.scrolled = output.state.offset.y;
+        self.grid = grid;
     }
 
     fn tile(&mut self, ui: &mut Ui, world: &World, component: &Component, size: Vec2) -> Response {

@@ -4,7 +4,7 @@ use bevy::prelude::World;
 use bevy_egui::egui::{self, Align, Key, Layout, Response, RichText, Sense, Ui};
 use midair_document::{Document, GroupId, Kind, Layer, LayerId, ObjectId};
 
-use super::{Panel, icon};
+use super::{Panel, icon, kit};
 use crate::command::Command;
 use crate::objects::{Ask, How};
 use crate::project::{Project, Selection};
@@ -36,10 +36,8 @@ impl Panel for Outline {
         let selection = &world.resource::<Selection>().0;
         let mut ask = Vec::new();
         ui.horizontal(|ui| {
-            let search = egui::TextEdit::singleline(&mut self.query)
-                .hint_text(format!("{}  Find", icon::MAGNIFYING_GLASS))
-                .desired_width(ui.available_width() - 44.0);
-            ui.add(search);
+            let width = ui.available_width() - 60.0;
+            kit::search(ui, &mut self.query, "Find", width);
             if ui
                 .button(icon::STACK_PLUS)
                 .on_hover_text("New layer")

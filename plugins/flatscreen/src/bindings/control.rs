@@ -111,8 +111,8 @@ macro_rules! controls {
 
 controls! {
     Hands in View {
-        Act = "act" "Act, select",
-        Grab = "grab" "Hold what the hand touches",
+        Act = "act" "Select, place, draw",
+        Grab = "grab" "Take and move what is touched (drag)",
         Finish = "finish" "Finish",
         Alt = "alt" "The other way: the other hand's trigger",
         Cancel = "cancel" "Cancel",

@@ -3,7 +3,9 @@
 //! Leafwing compares every pair of bindings in every frame to tell `Ctrl+Z` from `Z`; here a chord
 //! begins when its last part goes down, and only the longest that fits begins.
 
+use bevy::input::ButtonState;
 use bevy::input::gamepad::{Gamepad, GamepadAxis};
+use bevy::input::keyboard::KeyboardInput;
 use bevy::platform::time::Instant;
 use bevy::prelude::*;
 use leafwing_input_manager::action_state::ActionState;
@@ -174,13 +176,14 @@ impl Controls {
 type Devices<'w, 's> = (
     Res<'w, ButtonInput<KeyCode>>,
     Res<'w, ButtonInput<MouseButton>>,
+    MessageReader<'w, 's, KeyboardInput>,
     MessageReader<'w, 's, CursorMoved>,
     Query<'w, 's, (Entity, &'static Gamepad)>,
 );
 
 /// Reads the devices, before anything else of the frame asks what they say.
 pub(crate) fn listen(
-    (keys, mouse, mut moved, pads): Devices,
+    (keys, mouse, mut struck, mut moved, pads): Devices,
     time: Res<Time>,
     bindings: Res<Bindings>,
     attention: Res<Attention>,
@@ -197,6 +200,7 @@ pub(crate) fn listen(
     }
     let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
     taps(&keys, &mouse, &pads, &mut store);
+    chords(struck.read(), &mut store);
     let controls = &mut *controls;
     controls.choose(&keys, &mouse, travelled, &pads);
     controls.update(&store, *attention, time.delta_secs());
@@ -222,6 +226,32 @@ fn taps(
         }
     }
 }
+
+/// A modifier that is let go of in the frame in which a key went down before that was meant for the key.
+fn chords<'a>(events: impl Iterator<Item = &'a KeyboardInput>, store: &mut CentralInputStore) {
+    let mut struck = false;
+    for event in events {
+        let modifier = MODIFIER_KEYS.contains(&event.key_code);
+        match event.state {
+            ButtonState::Pressed => struck |= !modifier && !event.repeat,
+            ButtonState::Released if modifier && struck => {
+                store.update_buttonlike(event.key_code, ButtonValue::from_pressed(true));
+            }
+            ButtonState::Released => {}
+        }
+    }
+}
+
+const MODIFIER_KEYS: [KeyCode; 8] = [
+    KeyCode::ControlLeft,
+    KeyCode::ControlRight,
+    KeyCode::ShiftLeft,
+    KeyCode::ShiftRight,
+    KeyCode::AltLeft,
+    KeyCode::AltRight,
+    KeyCode::SuperLeft,
+    KeyCode::SuperRight,
+];
 
 impl Controls {
     /// Which device, and which gamepad, is listened to and named.

@@ -197,14 +197,14 @@ impl fmt::Display for Report {
         if !self.bounds.is_empty() {
             let [x, y, z] = self.bounds.size().to_array();
             let (min, max) = (self.bounds.min, self.bounds.max);
-            fact("size", format!("{x} × {y} × {z} m"))?;
+            let mm = [x, y, z].map(|v| length(1000.0 * v));
             fact(
-                "bounds",
-                format!(
-                    "{} {} {} to {} {} {}",
-                    min.x, min.y, min.z, max.x, max.y, max.z
-                ),
+                "size",
+                format!("{} × {} × {} m", length(x), length(y), length(z)),
             )?;
+            fact("", format!("{} × {} × {} mm", mm[0], mm[1], mm[2]))?;
+            let corner = |p: glam::Vec3| p.to_array().map(length).join(" ");
+            fact("bounds", format!("{} to {}", corner(min), corner(max)))?;
         }
         let faults = self.faults();
         match faults.len() {
@@ -212,6 +212,16 @@ impl fmt::Display for Report {
             1 => write!(f, "{:<20}1 fault: {}", "verdict", faults[0]),
             n => write!(f, "{:<20}{n} faults: {}", "verdict", faults.join("; ")),
         }
+    }
+}
+
+/// `x` with six significant digits and no zeros at the end: what is beyond them is the file's own rounding.
+fn length(x: f32) -> String {
+    let digits = 5 - x.abs().max(f32::MIN_POSITIVE).log10().floor() as i32;
+    let text = format!("{x:.*}", digits.clamp(0, 12) as usize);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
     }
 }
 
@@ -223,5 +233,24 @@ fn significant(x: f64) -> String {
             format!("{x:.digits$}")
         }
         false => format!("{x:.6e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::length;
+
+    #[test]
+    fn lengths_have_no_noise() {
+        for (x, text) in [
+            (0.299_999_98, "0.3"),
+            (0.399_98, "0.39998"),
+            (-400.0, "-400"),
+            (0.0, "0"),
+            (123_456.7, "123457"),
+            (1.5e-5, "0.000015"),
+        ] {
+            assert_eq!(length(x), text);
+        }
     }
 }

@@ -19,14 +19,14 @@ fn binary(bytes: &[u8]) -> Result<Soup, ReadReason> {
     let Some(count) = stl_count(bytes) else {
         return Err(ReadReason::CutOff("its header is incomplete".into()));
     };
-    if count > MAX_TRIANGLES as u64 {
-        return Err(ReadReason::TooManyTriangles);
-    }
     let present = (bytes.len() as u64 - 84) / 50;
     if present < count {
         return Err(ReadReason::CutOff(format!(
             "it announces {count} triangles and holds {present}"
         )));
+    }
+    if count > MAX_TRIANGLES as u64 {
+        return Err(ReadReason::TooManyTriangles);
     }
     let mut soup = Soup::default();
     if (bytes.len() as u64) > 84 + 50 * count {

@@ -240,16 +240,13 @@ fn counts_that_lie() {
         ReadReason::CutOff(_)
     ));
     let mut stl = vec![0; 84];
-    stl[80..84].copy_from_slice(&40_000_000_u32.to_le_bytes());
-    assert!(matches!(
-        reason(read_bytes(&stl, Format::Stl, "it")),
-        ReadReason::CutOff(_)
-    ));
-    stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert_eq!(
-        reason(read_bytes(&stl, Format::Stl, "it")),
-        ReadReason::TooManyTriangles
-    );
+    for announced in [40_000_000, u32::MAX] {
+        stl[80..84].copy_from_slice(&announced.to_le_bytes());
+        assert!(matches!(
+            reason(read_bytes(&stl, Format::Stl, "it")),
+            ReadReason::CutOff(_)
+        ));
+    }
 }
 
 #[test]
