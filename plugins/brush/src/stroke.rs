@@ -322,7 +322,7 @@ fn from_polygon(corners: &[Vec3], q: Vec3) -> f32 {
 pub fn name(stroke: &Stroke) -> &'static str {
     match (&stroke.skeleton, stroke.erase) {
         (Skeleton::Points(p), false) if p.len() == 1 => "Point",
-        (Skeleton::Points(_), false) => "Led point",
+        (Skeleton::Points(_), false) => "Drawn point",
         (Skeleton::Points(_), true) => "Erased",
         (Skeleton::Line(..), false) => "Line",
         (Skeleton::Line(..), true) => "Erased line",
