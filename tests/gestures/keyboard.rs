@@ -92,7 +92,7 @@ fn f6_goes_round_and_escape_leaves_and_tab_stays_the_hands() {
     assert!(!desk.focus().is_inside());
 }
 
-/// A frame that takes long has all of a quick Ctrl+D in it but the first key: it must not become D.
+/// A frame that takes long has all of a quick Ctrl+Z in it but the first key: it must not become Z.
 #[test]
 fn a_chord_that_ends_within_one_frame_is_still_a_chord() {
     let mut desk = Desk::new();
@@ -118,6 +118,24 @@ fn a_chord_that_ends_within_one_frame_is_still_a_chord() {
     desk.wait(3);
     let document = desk.world().resource::<Project>().document();
     assert!(document.object(second).is_some());
+}
+
+#[test]
+fn escape_shuts_the_window_over_the_view_where_it_means_nothing_else() {
+    let mut desk = Desk::new();
+    let open = |d: &Desk| d.world().resource::<Panels>().is_open("help");
+    let measures = |d: &Desk| d.world().resource::<midair_studio::ruler::Ruler>().on;
+    desk.strike_one(KeyCode::F1);
+    assert!(open(&desk));
+    desk.strike_one(KeyCode::KeyK);
+    assert!(measures(&desk));
+    desk.strike_one(KeyCode::Escape);
+    assert!(!measures(&desk) && open(&desk), "first what one is at");
+    desk.strike_one(KeyCode::Escape);
+    assert!(!open(&desk));
+    desk.panel("library", true);
+    desk.strike_one(KeyCode::Escape);
+    assert!(desk.world().resource::<Panels>().is_open("library"));
 }
 
 #[test]

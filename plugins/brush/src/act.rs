@@ -342,7 +342,11 @@ pub(crate) fn end(
             }
             step_name(BrushSkeleton::Polygon, draft.erase).to_owned()
         }
-        _ => step_name(studio.settings.brush.skeleton, draft.erase).to_owned(),
+        _ => {
+            let chosen = studio.settings.brush.skeleton;
+            let skeleton = draft.skeleton(side).unwrap_or(chosen);
+            step_name(skeleton, draft.erase).to_owned()
+        }
     };
     match made {
         Ok(Some(work)) => {

@@ -86,7 +86,8 @@ pub(crate) fn show(
     let radius = brush.radius / hands.metres_per_world;
     let seen = hand.tracked && held.get(side).is_none() && !editing;
     let (mut hollow, mut full) = (None, None);
-    let at = match brush.skeleton {
+    let skeleton = draft.skeleton(side).unwrap_or(brush.skeleton);
+    let at = match skeleton {
         _ if !seen => None,
         BrushSkeleton::Volume => studio.volume().ok().and_then(|(_, recipe)| {
             let size = brush.size / hands.metres_per_world;

@@ -1,6 +1,7 @@
 use bevy::prelude::*;
 use midair_field::Stroke;
 use midair_studio::hands::{Pose, Side};
+use midair_studio::settings::BrushSkeleton;
 
 /// Where one hand is in a gesture. Places are in the world, metres; w is a radius there.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,6 +69,17 @@ impl Draft {
     /// Takes one hand to another phase.
     pub fn set(&mut self, side: Side, phase: Phase) {
         self.phases[side as usize] = phase;
+    }
+
+    /// What a hand has begun to paint with, whatever has been chosen since.
+    pub fn skeleton(&self, side: Side) -> Option<BrushSkeleton> {
+        match self.phase(side) {
+            Phase::Leading { .. } => Some(BrushSkeleton::Point),
+            Phase::Line { .. } => Some(BrushSkeleton::Line),
+            Phase::Polygon { .. } => Some(BrushSkeleton::Polygon),
+            Phase::Stamping => Some(BrushSkeleton::Volume),
+            Phase::Idle | Phase::Alt | Phase::Moving { .. } => None,
+        }
     }
 
     /// The hand that has begun something.

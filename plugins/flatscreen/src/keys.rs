@@ -5,13 +5,15 @@ use midair_studio::{
     command::{Command, Dialog},
     hands::Action,
     objects::Ask,
-    panel::Panels,
+    panel::{Dock, Panels},
     project::{Project, Selection, Then},
+    ruler::Ruler,
     settings::Settings,
-    tools::Tools,
+    tools::{HintKey, Hints, Tools},
 };
 
 use crate::bindings::{Bindings, Control, Controls, Device};
+use crate::pointer::Pointer;
 
 /// What the device that was used last calls an action; empty where it has nothing for it.
 pub fn key_name(action: Action, bindings: &Bindings, device: Device) -> String {
@@ -72,7 +74,8 @@ const PANELS: [(Control, &str); 6] = [
 
 pub(crate) fn commands(
     (controls, settings): (Res<Controls>, Res<Settings>),
-    (tools, panels): (Res<Tools>, Res<Panels>),
+    (tools, panels, hints): (Res<Tools>, Res<Panels>, Res<Hints>),
+    (pointer, ruler): (Res<Pointer>, Res<Ruler>),
     (project, selection): (Res<Project>, Res<Selection>),
     mut commands: MessageWriter<Command>,
 ) {
@@ -171,5 +174,19 @@ pub(crate) fn commands(
                 open: !panels.is_open(id),
             });
         }
+    }
+    // Where cancel means nothing else, it shuts what was opened last over the view.
+    let meant = hints
+        .buttons
+        .iter()
+        .any(|h| h.action == HintKey::Action(Action::Cancel));
+    if controls.just_pressed(Control::Cancel)
+        && !(meant || pointer.stretching || pointer.holds() || ruler.on)
+        && let Some(window) = panels.open_in(Dock::Window).last()
+    {
+        commands.write(Command::Panel {
+            id: window.id.to_owned(),
+            open: false,
+        });
     }
 }
