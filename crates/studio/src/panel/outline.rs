@@ -36,7 +36,7 @@ impl Panel for Outline {
         let selection = &world.resource::<Selection>().0;
         let mut ask = Vec::new();
         ui.horizontal(|ui| {
-            let width = ui.available_width() - 60.0;
+            let width = ui.available_width() - 44.0;
             kit::search(ui, &mut self.query, "Find", width);
             if ui
                 .button(icon::STACK_PLUS)
