@@ -165,6 +165,7 @@ impl Drawn {
             handle
         })
     }
+
     /// What draws a solid that is made already and drawn by something.
     pub(super) fn get(&self, key: &Key) -> Option<&Handle<Mesh>> {
         self.made.get(key)
