@@ -412,11 +412,13 @@ impl Backend {
         if !program.is_painting() {
             early.is_plain(&mesh);
         }
+        let timing = solid.timing();
+        kept.keep(solid, gpu.budget());
+        // Edges are the processor's: the card is free for others meanwhile.
+        drop(kept);
         let plain = mesh.positions.len();
         let sharp = crisp_unless(&mesh, program, cancel).ok().flatten();
         let mesh = sharp.unwrap_or(mesh);
-        let timing = solid.timing();
-        kept.keep(solid, gpu.budget());
         // Without a clock on the device all of it counts as fusing, all of the way back as extracting.
         let fuse = timing.cull.zip(timing.fuse).map_or(made, |(a, b)| a + b);
         Ok(OnCard {

@@ -56,7 +56,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// How high those sections are that change as one works.
+    /// Headings and rows of those sections that change as one works.
     fn above(&self, sections: &[Section]) -> Option<(usize, usize)> {
         let changing = sections
             .iter()

@@ -68,11 +68,7 @@ impl Panel for SettingsPanel {
         let mut parts = parts;
         parts.sort_by_key(|(part, _)| rank(part).unwrap_or(FIRST.len()));
         ui.set_width(WIDTH.min(ui.ctx().viewport_rect().width() - 64.0));
-        let search = egui::TextEdit::singleline(&mut self.query)
-            .hint_text(format!("{}  Find a setting", icon::MAGNIFYING_GLASS))
-            .margin(egui::Margin::symmetric(8, 6))
-            .desired_width(f32::INFINITY);
-        ui.add(search);
+        kit::search(ui, &mut self.query, "Find a setting", f32::INFINITY);
         let query = self.query.trim().to_lowercase();
         if query.is_empty() {
             ui.horizontal_wrapped(|ui| {

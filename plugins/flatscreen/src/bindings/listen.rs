@@ -15,7 +15,8 @@ use leafwing_input_manager::user_input::updating::CentralInputStore;
 use leafwing_input_manager::user_input::{ModifierKey, SpecificGamepadButton};
 use midair_studio::hands::HOLD;
 
-use super::{Binding, Bindings, Context, Control, Device, part::Part};
+use super::part::{MODIFIERS, Part};
+use super::{Binding, Bindings, Context, Control, Device};
 
 /// A control that repeats does so this often, in seconds, once it is held.
 const REPEAT: f32 = 0.12;
@@ -231,7 +232,9 @@ fn taps(
 fn chords<'a>(events: impl Iterator<Item = &'a KeyboardInput>, store: &mut CentralInputStore) {
     let mut struck = false;
     for event in events {
-        let modifier = MODIFIER_KEYS.contains(&event.key_code);
+        let modifier = MODIFIERS
+            .iter()
+            .any(|(m, _)| [m.left(), m.right()].contains(&event.key_code));
         match event.state {
             ButtonState::Pressed => struck |= !modifier && !event.repeat,
             ButtonState::Released if modifier && struck => {
@@ -241,17 +244,6 @@ fn chords<'a>(events: impl Iterator<Item = &'a KeyboardInput>, store: &mut Centr
         }
     }
 }
-
-const MODIFIER_KEYS: [KeyCode; 8] = [
-    KeyCode::ControlLeft,
-    KeyCode::ControlRight,
-    KeyCode::ShiftLeft,
-    KeyCode::ShiftRight,
-    KeyCode::AltLeft,
-    KeyCode::AltRight,
-    KeyCode::SuperLeft,
-    KeyCode::SuperRight,
-];
 
 impl Controls {
     /// Which device, and which gamepad, is listened to and named.

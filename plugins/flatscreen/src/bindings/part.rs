@@ -27,7 +27,7 @@ pub enum Part {
     Pad(GamepadButton),
 }
 
-const MODIFIERS: [(ModifierKey, &str); 4] = [
+pub(super) const MODIFIERS: [(ModifierKey, &str); 4] = [
     // Where Command does what Ctrl does elsewhere.
     #[cfg(target_os = "macos")]
     (ModifierKey::Super, "Ctrl"),

@@ -1,10 +1,9 @@
 use super::*;
+use bevy::math::Vec3;
+use midair_field::{Node, Op, Operand, Primitive};
 
 /// Nothing is given up here.
 static GO: AtomicBool = AtomicBool::new(false);
-
-use bevy::math::Vec3;
-use midair_field::{Node, Op, Operand, Primitive};
 
 fn ball(radius: f32) -> Recipe {
     Primitive::Sphere { radius }.into()
