@@ -98,3 +98,47 @@ fn a_gamepad_draws_a_line() {
     assert_eq!(lines.len(), 1, "{:?}", desk.warnings());
     assert!(lines[0].a.distance(lines[0].b) > 0.05);
 }
+
+#[test]
+fn what_is_drawn_keeps_its_depth_and_a_press_on_one_spot_is_no_stroke() {
+    for orthographic in [false, true] {
+        let mut desk = drawing();
+        desk.asks(Settings::command("look.orthographic", orthographic));
+        desk.asks(Settings::command("scaffold.draws", Draws::Stroke));
+        // On the ground, where nothing stands.
+        let corners = [(-0.3, 0.2), (0.3, 0.25), (0.35, -0.2), (-0.25, -0.25)];
+        let corners = corners.map(|(x, z)| desk.pixel(Vec3::new(x, 0.0, z)));
+        desk.glide(corners[0]);
+        desk.mouse(MouseButton::Left, true);
+        desk.wait(40);
+        desk.mouse(MouseButton::Left, false);
+        desk.wait(3);
+        assert_eq!(
+            desk.document().objects().count(),
+            0,
+            "a press on one spot draws nothing"
+        );
+        desk.mouse(MouseButton::Left, true);
+        desk.wait(20);
+        for corner in [corners[1], corners[2], corners[3], corners[0]] {
+            desk.glide(corner);
+        }
+        desk.mouse(MouseButton::Left, false);
+        desk.wait(3);
+        let strokes: Vec<_> = desk
+            .document()
+            .objects()
+            .filter_map(|(_, o)| o.stroke().cloned())
+            .collect();
+        assert_eq!(strokes.len(), 1, "{:?}", desk.warnings());
+        let raw = &strokes[0].raw;
+        let deep: Vec<f32> = raw.iter().map(|p| desk.seen(p.as_vec3()).z).collect();
+        assert!(
+            deep.iter().all(|d| (d - deep[0]).abs() < 1e-3),
+            "{:?} to {:?} deep, orthographic: {orthographic}",
+            deep.first(),
+            deep.last()
+        );
+        assert!(strokes[0].closed, "it ends where it began");
+    }
+}

@@ -473,7 +473,9 @@ fn turn_by(eye: &Transform, travelled: Vec2) -> Quat {
 /// Where a ray is so deep in the view.
 fn at_depth(ray: &Ray3d, eye: &Transform, far: f32) -> Option<Vec3> {
     let along = ray.direction.dot(*eye.forward());
-    (along > 0.1).then(|| ray.get_point(far / along))
+    // The ray starts at the near plane, and without perspective even behind the eye.
+    let ahead = (ray.origin - eye.translation).dot(*eye.forward());
+    (along > 0.1).then(|| ray.get_point((far - ahead) / along))
 }
 
 /// Where nothing is hit: on the work plane if it is near (the ground, unless it is in use), else as far
