@@ -8,6 +8,7 @@ mod carry;
 mod desk;
 mod dropping;
 mod early;
+mod first_steps;
 mod fuzz;
 mod gamepad;
 mod holding;

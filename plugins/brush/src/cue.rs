@@ -73,7 +73,12 @@ pub(crate) fn hints(
             }
             Phase::Polygon { corners } => {
                 let n = corners.len();
-                next.begin(format!("A polygon with {n} corners"))
+                let corners = if n == 1 { "corner" } else { "corners" };
+                let more = match 4_usize.saturating_sub(n) {
+                    0 => String::new(),
+                    left => format!(": {left} more at least"),
+                };
+                next.begin(format!("A polygon with {n} {corners}{more}"))
                     .say(Action::Act, "another corner");
                 if n >= 4 {
                     next.say(Action::Finish, "close it");

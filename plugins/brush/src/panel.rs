@@ -17,7 +17,7 @@ use midair_studio::{
             Vec2, vec2,
         },
         icon,
-        kit::{empty, field, icon_button, strong},
+        kit::{empty, field, icon_button, search, strong},
     },
     project::{Picture, Places, Project, Selection, Shelf, Thumbnails},
     settings::{BrushSettings, BrushSkeleton, Settings},
@@ -221,14 +221,8 @@ impl BrushPanel {
     ) {
         let shelf = world.resource::<Shelf>();
         let easel = world.resource::<Easel>();
-        ui.add(
-            egui::TextEdit::singleline(&mut self.query)
-                .hint_text(format!(
-                    "{}  Any solid of the library",
-                    icon::MAGNIFYING_GLASS
-                ))
-                .desired_width(f32::INFINITY),
-        );
+        let wide = ui.available_width();
+        search(ui, &mut self.query, "Any solid of the library", wide);
         let found: Vec<_> = if self.query.trim().is_empty() {
             let own = shelf.library.categories().find(|(c, _)| *c == SHELF);
             own.map_or(Vec::new(), |(_, c)| c.iter().collect())

@@ -8,6 +8,7 @@ use midair_studio::{
     panel::{ACCENT, Palette},
     project::{Project, Shelf},
     show::{Cues, ObjectMap, Readouts},
+    tools::{HintKey, Hints, Tools},
 };
 
 use crate::bindings::{Bindings, Controls};
@@ -63,45 +64,52 @@ pub(crate) fn objects(
     Ok(())
 }
 
+/// What brings a rectangle into the view, where it is to be read whole.
+fn into(view: egui::Rect, rect: egui::Rect) -> egui::Vec2 {
+    let by = |low: f32, high: f32, least: f32, most: f32| {
+        (least - low).max(0.0) + (most - high).min(0.0)
+    };
+    egui::vec2(
+        by(rect.left(), rect.right(), view.left(), view.right()),
+        by(rect.top(), rect.bottom(), view.top(), view.bottom()),
+    )
+}
+
 /// Behind words over the view: a panel's colour, nearly closed, so that they read in every room.
 fn backing(palette: &Palette) -> egui::Color32 {
     palette.panel.gamma_multiply(0.92)
 }
 
-/// An empty room says how one begins.
+/// An empty room says how one begins: in large words what the mode's first button does now.
 pub(crate) fn empty(
     mut contexts: EguiContexts,
     project: Res<Project>,
     shelf: Res<Shelf>,
+    (tools, hints, hands): (Res<Tools>, Res<Hints>, Res<Hands>),
     screen: Res<Screen>,
     (controls, bindings): (Res<Controls>, Res<Bindings>),
 ) -> Result {
     let ctx = contexts.ctx_mut()?;
+    // While something is drawn it is looked at, and not read.
+    let acts = Side::BOTH
+        .into_iter()
+        .any(|side| hands.get(side).held(Action::Act));
     let Some(view) = screen
         .view()
-        .filter(|_| project.document().objects().next().is_none())
+        .filter(|_| project.document().objects().next().is_none() && !acts)
     else {
         return Ok(());
     };
     let painter = ctx
         .layer_painter(egui::LayerId::background())
         .with_clip_rect(view);
-    let first = if shelf.open {
-        "Pick a shape to begin".to_owned()
-    } else {
-        let key = key_name(Action::Library, &bindings, controls.device());
-        format!("Press {key} for the library")
-    };
+    let named = |action| key_name(action, &bindings, controls.device());
+    let (first, second) = begins(&hints, &tools, shelf.open, named);
     let at = egui::pos2(view.center().x, view.top() + 0.3 * view.height());
     let palette = Palette::of(&ctx.global_style().visuals);
     for (text, size, down, colour) in [
         (first.as_str(), 24.0, 0.0, palette.text),
-        (
-            "or drop a mesh or a document here",
-            15.0,
-            32.0,
-            palette.weak,
-        ),
+        (second, 15.0, 32.0, palette.weak),
     ] {
         painter.text(
             at + egui::vec2(0.0, down),
@@ -112,6 +120,29 @@ pub(crate) fn empty(
         );
     }
     Ok(())
+}
+
+/// What one begins with in this mode, and what else there is to it.
+fn begins(
+    hints: &Hints,
+    tools: &Tools,
+    library: bool,
+    named: impl Fn(Action) -> String,
+) -> (String, &'static str) {
+    const DROP: &str = "or drop a mesh or a document here";
+    if library {
+        return ("Pick a shape to begin".to_owned(), DROP);
+    }
+    let first = hints.buttons.first();
+    let draws = first.filter(|h| h.action == HintKey::Action(Action::Act));
+    if let (Some(hint), Some(tool)) = (draws, tools.active()) {
+        let text = format!("{}: {}", named(Action::Act), hint.does);
+        let mut letters = text.chars();
+        let first = letters.next().into_iter().flat_map(char::to_uppercase);
+        return (first.chain(letters).collect(), tool.about);
+    }
+    let key = named(Action::Library);
+    (format!("Press {key} for the library"), DROP)
 }
 
 /// A dot at each hand; what lies below it is the studio's to show.
@@ -198,9 +229,43 @@ pub(crate) fn readouts(
         while let Some(other) = taken.iter().find(|r| r.intersects(rect)) {
             rect = rect.translate(egui::vec2(0.0, other.bottom() - rect.top() + 2.0));
         }
+        if view.contains(screen.point(at)) {
+            rect = rect.translate(into(view, rect));
+        }
         taken.push(rect);
         painter.rect_filled(rect, 4.0, backing(&palette));
         painter.galley(rect.center() - 0.5 * galley.size(), galley, palette.text);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_lies_in_the_view() {
+        let view = egui::Rect::from_min_max(egui::pos2(0.0, 50.0), egui::pos2(1000.0, 670.0));
+        let below = egui::Rect::from_center_size(egui::pos2(260.0, 667.0), egui::vec2(180.0, 24.0));
+        let moved = below.translate(into(view, below));
+        assert!(view.contains_rect(moved), "{moved:?}");
+        assert_eq!(moved.center().x, below.center().x);
+        let inside = below.translate(egui::vec2(0.0, -200.0));
+        assert_eq!(into(view, inside), egui::Vec2::ZERO);
+    }
+
+    #[test]
+    fn an_empty_room_says_what_the_mode_begins_with() {
+        let named = |action| match action {
+            Action::Act => "click".to_owned(),
+            _ => "L".to_owned(),
+        };
+        let tools = Tools::default();
+        let mut hints = Hints::default();
+        hints.begin("Assemble").say(Action::Library, "library");
+        let (first, _) = begins(&hints, &tools, false, named);
+        assert_eq!(first, "Press L for the library");
+        let (first, _) = begins(&hints, &tools, true, named);
+        assert_eq!(first, "Pick a shape to begin");
+    }
 }

@@ -23,6 +23,8 @@ use crate::{EPSILON, ask, edit, write};
 const CLICK: f32 = 0.25;
 /// How far a swipe over half the pad moves w.
 const SWIPE: f32 = 1.5;
+/// A press within this, in physical metres and in pixels, is one on one spot.
+const SPOT: (f64, f64) = (0.006, 3.5);
 /// α of Eq. 12.
 pub(crate) const ALPHA: f32 = 0.1;
 
@@ -118,7 +120,7 @@ pub(crate) fn ends(
     (touch, mut reserved): (Res<Touch>, ResMut<Reserved>),
     mut draft: ResMut<Draft>,
     project: Res<Project>,
-    selection: Res<Selection>,
+    mut selection: ResMut<Selection>,
     mut notices: ResMut<Notices>,
 ) {
     let draft = &mut *draft;
@@ -162,7 +164,15 @@ pub(crate) fn ends(
             if carries {
                 reserved.claim(main, Action::Grab);
             }
-            solo(draft, hands.get(main), dt, unit, carries, &settings);
+            if hands.get(main).pressed(Action::Act) {
+                draft.under = touch.get(main).map(|t| t.object);
+            }
+            let spot = hands.reach(main, SPOT.0, SPOT.1) as f32;
+            let reach = Reach { unit, spot, dt };
+            if solo(draft, hands.get(main), &reach, carries, &settings) == Then::Choose {
+                choose(draft.under, &mut selection, &mut notices);
+                hands.pulse(main, Haptic::Tick);
+            }
         }
     } else {
         if hands.get(off).pressed(Action::Act) && !matches!(draft.phase, Phase::Editing { .. }) {
@@ -190,11 +200,38 @@ pub(crate) fn ends(
     }
 }
 
+/// How far the one hand reaches, and for how long.
+struct Reach {
+    /// Metres of world in a physical one.
+    unit: f32,
+    /// Metres within which a press is one on one spot.
+    spot: f32,
+    /// Seconds of the frame.
+    dt: f32,
+}
+
+/// What was clicked is selected, so that it can be changed.
+fn choose(under: Option<ObjectId>, selection: &mut Selection, notices: &mut Notices) {
+    match under {
+        Some(object) => *selection = Selection(vec![object]),
+        None => notices.info(
+            "That was a press on one spot: hold and draw the way of the left end. On a thing it selects that.",
+        ),
+    }
+}
+
 /// The one hand places the ends or moves them.
-fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, carries: bool, settings: &Settings) {
+fn solo(
+    draft: &mut Draft,
+    hand: &Hand,
+    &Reach { unit, spot, dt }: &Reach,
+    carries: bool,
+    settings: &Settings,
+) -> Then {
     let doing = Doing {
         at: hand.pose.position,
         dt,
+        spot,
         pressed: hand.pressed(Action::Act),
         held: hand.held(Action::Act),
         grabbed: carries && hand.pressed(Action::Grab),
@@ -214,7 +251,7 @@ fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, carries: bool, setti
     hang(draft);
     let count = settings.sweep.count as usize;
     match then {
-        Then::Wait => {}
+        Then::Wait | Then::Choose => {}
         Then::Begin => begin(draft),
         Then::End => {
             // The left end's way is played to its end.
@@ -229,6 +266,7 @@ fn solo(draft: &mut Draft, hand: &Hand, dt: f32, unit: f32, carries: bool, setti
             draft.solo.rests();
         }
     }
+    then
 }
 
 /// Whether a hand is at the curve and not near its ends.

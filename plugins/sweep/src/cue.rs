@@ -155,6 +155,7 @@ pub(crate) fn hints(
     settings: Res<Settings>,
     project: Res<Project>,
     selection: Res<Selection>,
+    hands: Res<Hands>,
     mut hints: ResMut<Hints>,
 ) {
     let mut next = Hints::default();
@@ -194,15 +195,23 @@ pub(crate) fn hints(
                     Solo::Right { .. } | Solo::RightTangent { .. } => {
                         "place the right end, pull its tangent"
                     }
-                    Solo::Ready { .. } | Solo::LeftWay { .. } => "draw the way of the left end",
-                    _ => "draw the way of the right end: the left one plays back",
+                    Solo::Ready { .. } | Solo::LeftWay { .. } => {
+                        "hold, draw the way of the left end"
+                    }
+                    _ => "hold, draw the way of the right end: the left one plays back",
                 };
                 next.say(Action::Act, does);
                 if matches!(draft.solo, Solo::Ready { .. }) {
-                    next.say(
-                        Action::Grab,
-                        "carry both ends; or drag the curve by its middle",
-                    );
+                    // A pointer that draws takes nothing in hand: only the curve itself.
+                    let does = if hands.pixel > 0.0 {
+                        "the curve's middle: carry both ends"
+                    } else {
+                        "carry both ends; or drag the curve by its middle"
+                    };
+                    next.say(Action::Grab, does);
+                }
+                if draft.solo != Solo::Left {
+                    next.say(Action::Cancel, "one step back");
                 }
             } else {
                 next.say(Action::Act, "hold to sweep");

@@ -150,7 +150,8 @@ impl SweepPanel {
                 asks.push(SweepAsk::Smooth(1).command());
             }
             let editing = matches!(draft.phase, Phase::Editing { .. });
-            if ui.selectable_label(editing, "Bend its curves").clicked() {
+            let bend = Button::new("Bend its curves").selected(editing);
+            if ui.add(bend).clicked() {
                 asks.push(SweepAsk::Edit.command());
             }
             if ui.button("Sweep on").clicked() {

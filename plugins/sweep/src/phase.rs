@@ -92,6 +92,8 @@ pub struct Draft {
     pub(crate) swipes: [Option<f32>; 2],
     /// It is to be made a sweep in this frame.
     pub(crate) done: bool,
+    /// What the one hand touched when it was pressed.
+    pub(crate) under: Option<ObjectId>,
     /// The act that is down began a sweep or a bend, and is not to begin another.
     pub(crate) fresh: bool,
 }
@@ -114,6 +116,7 @@ impl Default for Draft {
             springs: [Spring::default(); 2],
             swipes: [None; 2],
             done: false,
+            under: None,
             fresh: true,
         }
     }

@@ -86,6 +86,8 @@ pub(crate) struct Doing {
     pub grabs: bool,
     /// It is at the curve, between its ends.
     pub middle: bool,
+    /// Metres within which a press is one on one spot.
+    pub spot: f32,
 }
 
 /// What follows for the sweep.
@@ -97,6 +99,8 @@ pub(crate) enum Then {
     Begin,
     /// It is let go.
     End,
+    /// Where a way was to be drawn one spot was pressed: that chooses what is there.
+    Choose,
 }
 
 /// A tangent pulled less far than this, physical metres, is not meant as one.
@@ -225,6 +229,9 @@ impl Solo {
                 way.push((time, at - from));
                 if doing.held {
                     Self::LeftWay { ends, from, way }
+                } else if way.iter().all(|w| w.1.length() < doing.spot) {
+                    then = Then::Choose;
+                    Self::Ready { ends }
                 } else {
                     Self::LeftDrawn { ends, way }
                 }
@@ -319,6 +326,7 @@ mod tests {
             grabbed: false,
             grabs: false,
             middle: false,
+            spot: 0.01,
         }
     }
 
@@ -343,6 +351,16 @@ mod tests {
         assert!(left.along().as_vec3().distance(Vec3::Y) < 1e-5);
         assert!(right.along().as_vec3().distance(Vec3::NEG_Y) < 1e-5);
         assert!(right.position.as_vec3().distance(Vec3::X * 0.4) < 1e-6);
+    }
+
+    #[test]
+    fn a_press_on_one_spot_is_no_way() {
+        let mut solo = placed();
+        let ready = solo.clone();
+        solo.advance(&doing(Vec3::ONE, true, true), 1.0);
+        solo.advance(&doing(Vec3::ONE + Vec3::X * 0.004, false, true), 1.0);
+        let then = solo.advance(&doing(Vec3::ONE, false, false), 1.0);
+        assert_eq!((then, solo), (Then::Choose, ready));
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
 
 /// Points across the names at the left of [`row`]s, in a column or a board of the usual width.
 const NAMES: f32 = 112.0;
-/// Points across the number beside a slider, with its unit: what is wider pushes a panel apart.
+/// Points across the number beside a slider, with its unit, until a wider one was shown.
 const NUMBER: f32 = 84.0;
 
 /// One thing to set: its name at the left, what sets it at the right, below that of the row above. Sliders take what room
@@ -70,11 +70,26 @@ pub fn wide_row<R>(ui: &mut Ui, across: f32, name: &str, show: impl FnOnce(&mut 
             ui.set_min_size(size);
             ui.add(Label::new(name).truncate());
         });
-        let room = ui.available_width() - NUMBER - UNIT;
-        ui.spacing_mut().slider_width = room.clamp(36.0, 240.0);
-        show(ui)
+        beside_number(ui, name, show)
     })
     .inner
+}
+
+/// Shows a slider as wide as its number leaves room for: a row that is too wide would push its panel apart, further in each
+/// frame. The widest number counts, so that one that comes and goes does so only once.
+fn beside_number<R>(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui) -> R) -> R {
+    let key = ui.id().with(("number", name));
+    let widest = ui.data(|d| d.get_temp(key)).unwrap_or(NUMBER + UNIT);
+    let room = (ui.available_width() - widest).clamp(36.0, 240.0);
+    ui.spacing_mut().slider_width = room;
+    let from = ui.cursor().left();
+    let shown = show(ui);
+    let wide = (ui.min_rect().right() - from - room).max(widest);
+    // What is no slider may be as wide as it likes.
+    if wide > widest && wide < 2.0 * NUMBER {
+        ui.data_mut(|d| d.insert_temp(key, wide));
+    }
+    shown
 }
 
 /// The same for what has a response of its own, which screen readers call by the name of the row.
@@ -92,9 +107,7 @@ pub fn field(ui: &mut Ui, name: &str, widget: impl Widget) -> Response {
 pub fn tall_field(ui: &mut Ui, name: &str, widget: impl Widget) -> Response {
     ui.add(Label::new(name).truncate());
     ui.horizontal(|ui| {
-        let room = ui.available_width() - NUMBER - UNIT;
-        ui.spacing_mut().slider_width = room.clamp(36.0, 240.0);
-        let response = ui.add(widget);
+        let response = beside_number(ui, name, |ui| ui.add(widget));
         let id = response.id;
         ui.ctx()
             .accesskit_node_builder(id, |node| node.set_label(name));

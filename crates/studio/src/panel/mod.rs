@@ -51,9 +51,19 @@ pub use bevy_egui::egui;
 /// The one set of icons that every panel uses.
 pub use egui_phosphor::regular as icon;
 
+fn turn(
+    changed: bevy::prelude::On<crate::tools::ToolChanged>,
+    tools: bevy::prelude::Res<crate::tools::Tools>,
+    mut panels: bevy::prelude::ResMut<Panels>,
+) {
+    let is_mode = |id: &str| tools.all().iter().any(|t| t.id.as_str() == id);
+    panels.turn_to(changed.active.as_str(), is_mode);
+}
+
 pub(crate) fn plugin(app: &mut bevy::prelude::App) {
     app.init_resource::<Panels>()
         .init_resource::<Host>()
+        .add_observer(turn)
         .add_panel(
             PanelInfo {
                 id: "library",

@@ -1,6 +1,6 @@
 //! Which panels there are and which are open.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::prelude::*;
 use bevy_egui::egui::Ui;
@@ -55,6 +55,8 @@ pub struct Panels {
     open: BTreeMap<&'static str, bool>,
     // Apart from the rest, so that one can be shown while the world is read.
     shows: BTreeMap<&'static str, Box<dyn Panel>>,
+    /// Those of modes that were left with their panel open.
+    left: BTreeSet<&'static str>,
 }
 
 impl Panels {
@@ -79,9 +81,25 @@ impl Panels {
         match self.open.get_mut(id) {
             Some(slot) => {
                 *slot = open;
+                self.left.remove(id);
                 true
             }
             None => false,
+        }
+    }
+
+    /// Another mode is taken: the panel of the one that is left goes, since it sets nothing there, and is there again
+    /// with its mode.
+    pub(super) fn turn_to(&mut self, mode: &str, is_mode: impl Fn(&str) -> bool) {
+        for info in &self.infos {
+            let Some(open) = self.open.get_mut(info.id).filter(|_| is_mode(info.id)) else {
+                continue;
+            };
+            if info.id == mode {
+                *open |= self.left.remove(info.id);
+            } else if std::mem::replace(open, false) {
+                self.left.insert(info.id);
+            }
         }
     }
 
@@ -111,5 +129,45 @@ impl AddPanel for App {
         panels.open.insert(info.id, info.open);
         panels.shows.insert(info.id, Box::new(panel));
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Bare;
+
+    impl Panel for Bare {
+        fn show(&mut self, _: &mut Ui, _: &World, _: &mut Vec<Command>) {}
+    }
+
+    #[test]
+    fn the_panel_of_a_mode_that_is_left_goes_and_comes_with_it() {
+        let mut app = App::new();
+        for id in ["sweep", "brush", "outline"] {
+            let info = PanelInfo {
+                id,
+                title: id,
+                icon: "",
+                dock: Dock::Right,
+                order: 0,
+                open: false,
+                in_bar: true,
+            };
+            app.add_panel(info, Bare);
+        }
+        let mut panels = app.world_mut().resource_mut::<Panels>();
+        let is_mode = |id: &str| id != "outline";
+        panels.set_open("sweep", true);
+        panels.set_open("outline", true);
+        panels.turn_to("brush", is_mode);
+        assert!(!panels.is_open("sweep") && panels.is_open("outline"));
+        panels.turn_to("sweep", is_mode);
+        assert!(panels.is_open("sweep") && !panels.is_open("brush"));
+        panels.set_open("sweep", false);
+        panels.turn_to("brush", is_mode);
+        panels.turn_to("sweep", is_mode);
+        assert!(!panels.is_open("sweep"), "what was shut stays shut");
     }
 }
