@@ -131,6 +131,8 @@ const VERTEX_COUNT: u32 = 5u;
 const TRIANGLE_BASE: u32 = 6u;
 const TRIANGLE_COUNT: u32 = 7u;
 const ALIVE: u32 = 8u;
+// The table of its chunk.
+const TABLE: u32 = 9u;
 const SIGNS: u32 = 16u;
 const CROSSED: u32 = 32u;
 const BEFORE: u32 = 80u;
@@ -203,6 +205,14 @@ fn brick_entry(c: vec3<i32>) -> u32 {
         }
     }
     return OUTSIDE;
+}
+
+// The same of a brick beside one whose chunk has this table: most lie in the same chunk, which is then not looked for.
+fn entry_beside(table: u32, c: vec3<i32>, beside: vec3<i32>) -> u32 {
+    if all((c >> vec3(3u)) == (beside >> vec3(3u))) {
+        return atomicLoad(&pages[entry_at(table, beside)]);
+    }
+    return brick_entry(beside);
 }
 
 // Appends a record; `link` makes it findable.

@@ -30,7 +30,7 @@ fn coordinate(slot: u32) -> vec3<i32> {
 
 var<workgroup> sign_words: array<atomic<u32>, 16>;
 
-// Which nodes lie inside.
+// Which nodes lie inside, of values that `fuse` did not make.
 @compute @workgroup_size(256)
 fn classify(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
     let p = piece(flat_group(group), lid);
@@ -86,7 +86,7 @@ fn fill_signs(lid: u32) {
 
 // Crossed edges by axis, how many lie before each word, and room in the mesh for the brick's share:
 // the vertices on edges that start at its nodes, the triangles of cells that do.
-@compute @workgroup_size(256)
+@compute @workgroup_size(256u)
 fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
     let p = piece(flat_group(group), lid);
     if p == NONE || (p & 0x40000000u) == 0u {
@@ -96,7 +96,7 @@ fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let c = coordinate(slot);
     if lid < 8u {
         let d = vec3<i32>(vec3(lid & 1u, (lid >> 1u) & 1u, lid >> 2u));
-        near[13 + d.x + 3 * d.y + 9 * d.z] = brick_entry(c + d);
+        near[13 + d.x + 3 * d.y + 9 * d.z] = entry_beside(bricks[STRIDE * slot + TABLE], c, c + d);
     }
     if lid < 48u {
         atomicStore(&crossed_words[lid], 0u);
@@ -158,6 +158,11 @@ fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
 var<workgroup> padded: array<f32, 1331>;
 // Bits 0 to 2 of each cell's number of triangles.
 var<workgroup> planes: array<atomic<u32>, 48>;
+// How many are set in the words before, of each of the three.
+var<workgroup> planes_before: array<u32, 48>;
+// The cells that the surface crosses, few of a brick's: number and case. Threads that go through these have all something to do.
+var<workgroup> busy: array<u32, 512>;
+var<workgroup> busy_count: atomic<u32>;
 
 fn padded_value(l: vec3<i32>) -> f32 {
     let d = (l >> vec3(3u)) + 1;
@@ -169,7 +174,21 @@ fn padded_value(l: vec3<i32>) -> f32 {
     return value(entry - NEAR, within(l));
 }
 
-fn vertex_of(axis: u32, l: vec3<i32>) -> u32 {
+// The brick's own crossed edges and how many lie before each two words, as its record has them: nearly all vertices that its
+// triangles name are its own.
+var<workgroup> own_ranks: array<u32, 72>;
+
+fn own_rank(axis: u32, node: u32) -> u32 {
+    let word = 16u * axis + (node >> 5u);
+    let pair = own_ranks[48u + (word >> 1u)];
+    let before = select(pair & 0xffffu, pair >> 16u, (word & 1u) == 1u);
+    return before + countOneBits(own_ranks[word] & ((1u << (node & 31u)) - 1u));
+}
+
+fn vertex_of(own_base: u32, axis: u32, l: vec3<i32>) -> u32 {
+    if all(l < vec3(8)) {
+        return own_base + own_rank(axis, within(l));
+    }
     let d = (l >> vec3(3u)) + 1;
     let entry = near[d.x + 3 * d.y + 9 * d.z];
     if entry < NEAR {
@@ -198,7 +217,7 @@ fn put(at: u32, v: vec3<f32>) {
     vertices[at + 2u] = bitcast<u32>(v.z);
 }
 
-fn emit_vertex(slot: u32, c: vec3<i32>, axis: u32, node: u32) {
+fn emit_vertex(own_base: u32, c: vec3<i32>, axis: u32, node: u32) {
     let strides = array<u32, 3>(1u, 11u, 121u);
     let s = strides[axis];
     let u = strides[(axis + 1u) % 3u];
@@ -229,28 +248,20 @@ fn emit_vertex(slot: u32, c: vec3<i32>, axis: u32, node: u32) {
         n = vec3(0.0);
         n[axis] = select(-1.0, 1.0, padded[o] <= -g.eps);
     }
-    let at = 6u * (bricks[STRIDE * slot + VERTEX_BASE] + rank(slot, axis, node));
+    let at = 6u * (own_base + own_rank(axis, node));
     put(at, p * g.step);
     put(at + 3u, n);
 }
 
 const HUGEST: f32 = 3.0e38;
 
-fn emit_cell(base: u32, node: u32) {
-    let case_now = cell_case(node);
+fn emit_cell(own_base: u32, base: u32, case_now: u32, node: u32) {
     let row = cases[case_now];
-    if row.z == 0u {
-        return;
-    }
     var first = 0u;
-    let word = node >> 5u;
     let below = (1u << (node & 31u)) - 1u;
     for (var k = 0u; k < 3u; k++) {
-        var sum = countOneBits(atomicLoad(&planes[16u * k + word]) & below);
-        for (var w = 0u; w < word; w++) {
-            sum += countOneBits(atomicLoad(&planes[16u * k + w]));
-        }
-        first += sum << k;
+        let word = 16u * k + (node >> 5u);
+        first += (planes_before[word] + countOneBits(atomicLoad(&planes[word]) & below)) << k;
     }
     let l = vec3<i32>(vec3(node & 7u, (node >> 3u) & 7u, node >> 6u));
     for (var k = 0u; k < 3u * row.z; k++) {
@@ -259,11 +270,22 @@ fn emit_cell(base: u32, node: u32) {
         var at = l;
         at[(axis + 1u) % 3u] += i32(edge & 1u);
         at[(axis + 2u) % 3u] += i32((edge >> 1u) & 1u);
-        indices[3u * (base + first) + k] = vertex_of(axis, at);
+        indices[3u * (base + first) + k] = vertex_of(own_base, axis, at);
     }
 }
 
-@compute @workgroup_size(256)
+// Which of the eight nodes of a cell lie inside.
+fn padded_case(node: u32) -> u32 {
+    let o = (node & 7u) + 1u + 11u * (((node >> 3u) & 7u) + 1u) + 121u * ((node >> 6u) + 1u);
+    var found = 0u;
+    for (var k = 0u; k < 8u; k++) {
+        let at = o + (k & 1u) + 11u * ((k >> 1u) & 1u) + 121u * (k >> 2u);
+        found |= select(0u, 1u << k, padded[at] <= -g.eps);
+    }
+    return found;
+}
+
+@compute @workgroup_size(256u)
 fn emit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
     let p = piece(flat_group(group), lid);
     if p == NONE {
@@ -273,6 +295,7 @@ fn emit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let r = STRIDE * slot;
     if lid == 0u {
         piece_now = bricks[r + VERTEX_COUNT] + bricks[r + TRIANGLE_COUNT];
+        atomicStore(&busy_count, 0u);
     }
     if workgroupUniformLoad(&piece_now) == 0u {
         return;
@@ -280,36 +303,56 @@ fn emit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let c = coordinate(slot);
     if lid < 27u {
         let d = vec3<i32>(vec3(lid % 3u, lid / 3u % 3u, lid / 9u)) - 1;
-        near[lid] = brick_entry(c + d);
+        near[lid] = entry_beside(bricks[r + TABLE], c, c + d);
     }
     if lid < 48u {
         atomicStore(&planes[lid], 0u);
+    }
+    // CROSSED and BEFORE lie one after the other.
+    if lid < 72u {
+        own_ranks[lid] = bricks[r + CROSSED + lid];
     }
     workgroupBarrier();
     for (var i = lid; i < 1331u; i += 256u) {
         padded[i] = padded_value(vec3<i32>(vec3(i % 11u, i / 11u % 11u, i / 121u)) - 1);
     }
-    fill_signs(lid);
     workgroupBarrier();
     for (var k = 0u; k < 2u; k++) {
         let node = lid + 256u * k;
-        let triangles = cases[cell_case(node)].z;
-        for (var bit = 0u; bit < 3u; bit++) {
-            if ((triangles >> bit) & 1u) == 1u {
-                atomicOr(&planes[16u * bit + (node >> 5u)], 1u << (node & 31u));
-            }
-        }
-        for (var axis = 0u; axis < 3u; axis++) {
-            let word = bricks[r + CROSSED + 16u * axis + (node >> 5u)];
-            if ((word >> (node & 31u)) & 1u) == 1u {
-                emit_vertex(slot, c, axis, node);
+        let case_now = padded_case(node);
+        if case_now != 0u && case_now != 255u {
+            busy[atomicAdd(&busy_count, 1u)] = node | (case_now << 9u);
+            let triangles = cases[case_now].z;
+            for (var bit = 0u; bit < 3u; bit++) {
+                if ((triangles >> bit) & 1u) == 1u {
+                    atomicOr(&planes[16u * bit + (node >> 5u)], 1u << (node & 31u));
+                }
             }
         }
     }
     workgroupBarrier();
+    if lid < 48u {
+        var sum = 0u;
+        for (var w = lid & 48u; w < lid; w++) {
+            sum += countOneBits(atomicLoad(&planes[w]));
+        }
+        planes_before[lid] = sum;
+    }
+    workgroupBarrier();
+    let own_base = bricks[r + VERTEX_BASE];
     let base = bricks[r + TRIANGLE_BASE];
-    if bricks[r + TRIANGLE_COUNT] > 0u {
-        emit_cell(base, lid);
-        emit_cell(base, lid + 256u);
+    let any = bricks[r + TRIANGLE_COUNT] > 0u;
+    let all = atomicLoad(&busy_count);
+    for (var i = lid; i < all; i += 256u) {
+        let node = busy[i] & 511u;
+        let case_now = busy[i] >> 9u;
+        for (var axis = 0u; axis < 3u; axis++) {
+            if ((case_now >> (1u << axis)) & 1u) != (case_now & 1u) {
+                emit_vertex(own_base, c, axis, node);
+            }
+        }
+        if any {
+            emit_cell(own_base, base, case_now, node);
+        }
     }
 }

@@ -5,6 +5,8 @@ var<workgroup> brick_low: atomic<u32>;
 var<workgroup> brick_high: atomic<u32>;
 var<workgroup> brick_count: u32;
 var<workgroup> brick_entry_now: u32;
+// Which nodes lie inside.
+var<workgroup> brick_signs: array<atomic<u32>, 16>;
 
 // Keeps the order of floats.
 fn ordered(v: f32) -> u32 {
@@ -54,8 +56,16 @@ fn steepest(b: Block) -> f32 {
     return most;
 }
 
-fn quantum(v: f32) -> u32 {
-    return bitcast<u32>(i32(clamp(round(v / g.eps), -32767.0, 32767.0))) & 0xffffu;
+fn quantum(v: f32) -> i32 {
+    return i32(clamp(round(v / g.eps), -32767.0, 32767.0));
+}
+
+// As `value` reads it back.
+fn is_inside(v: f32) -> bool {
+    if QUANTISED {
+        return quantum(v) < 0;
+    }
+    return v <= -g.eps;
 }
 
 @compute @workgroup_size(8, 8, 4)
@@ -64,6 +74,9 @@ fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         brick_count = min(atomicLoad(&counters[stage.count_in]), g.blocks);
         atomicStore(&brick_low, NONE);
         atomicStore(&brick_high, 0u);
+    }
+    if lid < 16u {
+        atomicStore(&brick_signs[lid], 0u);
     }
     let count = workgroupUniformLoad(&brick_count);
     let index = flat_group(group);
@@ -74,6 +87,10 @@ fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let pair = vec2(fused(b, 2u * lid), fused(b, 2u * lid + 1u));
     atomicMin(&brick_low, ordered(min(pair.x, pair.y)));
     atomicMax(&brick_high, ordered(max(pair.x, pair.y)));
+    let signs = select(0u, 1u, is_inside(pair.x)) | select(0u, 2u, is_inside(pair.y));
+    if signs != 0u {
+        atomicOr(&brick_signs[lid >> 4u], signs << (2u * (lid & 15u)));
+    }
     workgroupBarrier();
     if lid == 0u {
         let low = unordered(atomicLoad(&brick_low));
@@ -90,6 +107,7 @@ fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                 bricks[r + 1u] = bitcast<u32>(b.y);
                 bricks[r + 2u] = bitcast<u32>(b.z);
                 bricks[r + ALIVE] = 1u;
+                bricks[r + TABLE] = b.table;
                 bricks[r + VERTEX_COUNT] = 0u;
                 bricks[r + TRIANGLE_COUNT] = 0u;
             }
@@ -102,8 +120,12 @@ fn fuse(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let slot = entry - NEAR;
+    if lid < 16u {
+        bricks[STRIDE * slot + SIGNS + lid] = atomicLoad(&brick_signs[lid]);
+    }
     if QUANTISED {
-        values[256u * slot + lid] = quantum(pair.x) | (quantum(pair.y) << 16u);
+        let low = bitcast<u32>(quantum(pair.x)) & 0xffffu;
+        values[256u * slot + lid] = low | (bitcast<u32>(quantum(pair.y)) << 16u);
     } else {
         values[512u * slot + 2u * lid] = bitcast<u32>(pair.x);
         values[512u * slot + 2u * lid + 1u] = bitcast<u32>(pair.y);

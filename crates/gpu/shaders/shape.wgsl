@@ -219,7 +219,7 @@ fn helix(l: u32, q: vec3<f32>) -> f32 {
     return sqrt(min(min(up, down), min(low, high))) - minor;
 }
 
-// A volume: origin, step, cells, bricks, then table, ranges and values.
+// A volume: origin, step, cells, where its summaries begin, then table, ranges, values and summaries.
 fn volume_number(i: u32) -> f32 {
     return bitcast<f32>(volumes[i]);
 }
@@ -289,6 +289,24 @@ fn volume(at: u32, p: vec3<f32>) -> f32 {
     return sqrt(beyond * f.step * f.step + r * r);
 }
 
+// What is known of bricks together: by one, by eight, by 64 …, so that no more than four along an axis are looked at.
+struct Summaries {
+    level: u32,
+    // How many there are, and where they begin.
+    count: vec3<u32>,
+    first: u32,
+}
+
+fn summaries(at: u32, f: Frame, lo: vec3<u32>, hi: vec3<u32>) -> Summaries {
+    var s = Summaries(0u, f.bricks, f.ranges);
+    while any((hi >> vec3(s.level)) - (lo >> vec3(s.level)) > vec3(3u)) {
+        s.first = select(s.first + 3u * s.count.x * s.count.y * s.count.z, at + volumes[at + 7u], s.level == 0u);
+        s.count = (s.count + vec3(1u)) / 2u;
+        s.level++;
+    }
+    return s;
+}
+
 // Bounds of a volume no further than `radius` from the middle of a box, from its bricks' summaries.
 fn volume_bounds(at: u32, low: vec3<f32>, high: vec3<f32>, radius_in: f32) -> vec2<f32> {
     let f = frame_of(at);
@@ -297,8 +315,12 @@ fn volume_bounds(at: u32, low: vec3<f32>, high: vec3<f32>, radius_in: f32) -> ve
     let b = (high - f.origin) / f.step + vec3(1.0e-3);
     let p = clamp(a, vec3(0.0), top);
     let q = clamp(b, vec3(0.0), top);
-    let lo = min(vec3<u32>(p / 8.0), f.bricks - vec3(1u));
-    let hi = min(vec3<u32>(q / 8.0), f.bricks - vec3(1u));
+    var lo = min(vec3<u32>(p / 8.0), f.bricks - vec3(1u));
+    var hi = min(vec3<u32>(q / 8.0), f.bricks - vec3(1u));
+    let s = summaries(at, f, lo, hi);
+    lo = lo >> vec3(s.level);
+    hi = hi >> vec3(s.level);
+    let side = f32(8u << s.level);
     let centre = clamp(0.5 * (a + b), vec3(0.0), top);
     let radius = radius_in / f.step + 2.0e-3;
     var least = HUGE;
@@ -306,25 +328,25 @@ fn volume_bounds(at: u32, low: vec3<f32>, high: vec3<f32>, radius_in: f32) -> ve
     for (var z = lo.z; z <= hi.z; z++) {
         for (var y = lo.y; y <= hi.y; y++) {
             for (var x = lo.x; x <= hi.x; x++) {
-                let index = x + f.bricks.x * (y + f.bricks.y * z);
-                let first = vec3<f32>(vec3(x, y, z)) * 8.0;
-                let near = clamp(centre, first, min(first + vec3(8.0), top));
+                let index = x + s.count.x * (y + s.count.y * z);
+                let first = vec3<f32>(vec3(x, y, z)) * side;
+                let near = clamp(centre, first, min(first + vec3(side), top));
                 let away = centre - near;
                 let reach = radius * radius - dot(away, away);
                 if reach < 0.0 {
                     continue;
                 }
-                var s = volume_number(f.ranges + 3u * index);
-                var t = volume_number(f.ranges + 3u * index + 1u);
-                let slope = volume_number(f.ranges + 3u * index + 2u);
-                if (volumes[f.table + index] & 0x80000000u) != 0u && slope < HUGE {
+                var low_here = volume_number(s.first + 3u * index);
+                var high_here = volume_number(s.first + 3u * index + 1u);
+                let slope = volume_number(s.first + 3u * index + 2u);
+                if s.level == 0u && (volumes[f.table + index] & 0x80000000u) != 0u && slope < HUGE {
                     let v = in_brick(f, index, near - first);
                     let most = slope * sqrt(reach);
-                    s = max(s, v - most);
-                    t = min(t, v + most);
+                    low_here = max(low_here, v - most);
+                    high_here = min(high_here, v + most);
                 }
-                least = min(least, s);
-                greatest = max(greatest, t);
+                least = min(least, low_here);
+                greatest = max(greatest, high_here);
             }
         }
     }
@@ -411,14 +433,17 @@ fn leaf_slope(leaf: u32, centre: vec3<f32>, half: f32, around: f32) -> f32 {
     if any(low < vec3(0.0)) || any(high > vec3<f32>(f.cells)) {
         return HUGE;
     }
-    let lo = vec3<u32>(low / 8.0);
-    let hi = min(vec3<u32>(high / 8.0), f.bricks - vec3(1u));
+    var lo = vec3<u32>(low / 8.0);
+    var hi = min(vec3<u32>(high / 8.0), f.bricks - vec3(1u));
+    let s = summaries(program[l + 1u], f, lo, hi);
+    lo = lo >> vec3(s.level);
+    hi = hi >> vec3(s.level);
     var most = 0.0;
     for (var z = lo.z; z <= hi.z; z++) {
         for (var y = lo.y; y <= hi.y; y++) {
             for (var x = lo.x; x <= hi.x; x++) {
-                let index = x + f.bricks.x * (y + f.bricks.y * z);
-                most = max(most, volume_number(f.ranges + 3u * index + 2u));
+                let index = x + s.count.x * (y + s.count.y * z);
+                most = max(most, volume_number(s.first + 3u * index + 2u));
             }
         }
     }

@@ -1,8 +1,8 @@
 // From triangles to a smooth surface (3DBrushVR §4.2): voxels whose middles are the lattice's nodes, the
 // cubes that triangles touch, a scanline fill, and the mean of the 27 around each node.
 
-// Triangles, nine numbers each, in steps.
-@group(0) @binding(19) var<storage, read> corners: array<f32>;
+// The mesh: for each triangle its three corners, then the corners' places in metres.
+@group(0) @binding(19) var<storage, read> corners: array<u32>;
 // One bit to a voxel, x fastest, rows of whole words: touched, then crossings of lines along x, which the fill
 // makes what lies inside.
 @group(0) @binding(20) var<storage, read_write> voxels: array<atomic<u32>>;
@@ -24,9 +24,10 @@ fn all_words() -> u32 {
     return row_words() * u32(extent().y * extent().z);
 }
 
+// In steps.
 fn corner(triangle: u32, k: u32) -> vec3<f32> {
-    let i = 9u * triangle + 3u * k;
-    return vec3(corners[i], corners[i + 1u], corners[i + 2u]);
+    let i = 3u * (g.shapes + corners[3u * triangle + k]);
+    return bitcast<vec3<f32>>(vec3(corners[i], corners[i + 1u], corners[i + 2u])) / g.step;
 }
 
 // Whether the shadows of a triangle and of the unit cube about the origin part along an axis.
@@ -175,6 +176,8 @@ fn smoothed(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     }
     workgroupBarrier();
     if lid == 0u {
+        // Every brick that is looked at lies in a chunk with a table.
+        let table = table_of(find(brick >> vec3(3u), 3u));
         var entry = OUTSIDE;
         if atomicLoad(&fewest) == 27u {
             entry = INSIDE;
@@ -188,16 +191,14 @@ fn smoothed(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
                 bricks[r + 1u] = u.y;
                 bricks[r + 2u] = u.z;
                 bricks[r + ALIVE] = 1u;
+                bricks[r + TABLE] = table;
                 bricks[r + VERTEX_COUNT] = 0u;
                 bricks[r + TRIANGLE_COUNT] = 0u;
             } else {
                 failed(NO_SLOTS);
             }
         }
-        let record = find(brick >> vec3(3u), 3u);
-        if record != NONE {
-            atomicStore(&pages[entry_at(table_of(record), brick)], entry);
-        }
+        atomicStore(&pages[entry_at(table, brick)], entry);
         entry_now = entry;
     }
     let entry = workgroupUniformLoad(&entry_now);

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{UVec3, Vec3};
 use midair_field::bake::Volume;
 use midair_field::{
-    Canvas, ConvexView, Form, LeafView, Node, OutlineEdge, Program, Recipe, TapeStep,
+    Canvas, ConvexView, Form, LeafView, Node, OutlineEdge, Program, Recipe, TapeStep, VolumeView,
 };
 
 use crate::GpuError;
@@ -194,11 +194,15 @@ impl Flat {
             out.extend(view.origin.to_array().map(f32::to_bits));
             out.push(view.step.to_bits());
             out.extend(view.cells.to_array());
-            out.push(0);
+            let summaries = HEAD + view.table.len() + 3 * view.ranges.len() + view.values.len();
+            out.push(summaries as u32);
             debug_assert_eq!(out.len() - before, HEAD);
             out.extend_from_slice(view.table);
             out.extend(view.ranges.as_flattened().iter().map(|x| x.to_bits()));
             out.extend(view.values.iter().map(|x| x.to_bits()));
+            for level in summaries_of(&view) {
+                out.extend(level.as_flattened().iter().map(|x| x.to_bits()));
+            }
         }
         out
     }
@@ -211,7 +215,38 @@ impl Flat {
 
 fn words_of(volume: &Volume) -> usize {
     let view = volume.view();
-    HEAD + view.table.len() + 3 * view.ranges.len() + view.values.len()
+    let summaries: usize = coarser(view.cells.map(|c| c.div_ceil(8))).map(count).sum();
+    HEAD + view.table.len() + 3 * (view.ranges.len() + summaries) + view.values.len()
+}
+
+fn count(n: UVec3) -> usize {
+    n.as_usizevec3().element_product()
+}
+
+/// Half as many along each side, and so on, down to one.
+fn coarser(bricks: UVec3) -> impl Iterator<Item = UVec3> {
+    let halved = |n: &UVec3| (n.max_element() > 1).then(|| (n + 1) / 2);
+    std::iter::successors(halved(&bricks), halved)
+}
+
+/// What is known of bricks together, eight by eight: the least and the greatest value, the greatest slope. A large block
+/// looks at a few of these instead of at every brick.
+fn summaries_of(view: &VolumeView) -> Vec<Vec<[f32; 3]>> {
+    let mut size = view.cells.map(|c| c.div_ceil(8));
+    let mut levels: Vec<Vec<[f32; 3]>> = Vec::new();
+    for n in coarser(size) {
+        let below = levels.last().map_or(view.ranges, Vec::as_slice);
+        let mut level = vec![[f32::INFINITY, f32::NEG_INFINITY, 0.0]; count(n)];
+        for (i, [low, high, slope]) in below.iter().enumerate() {
+            let i = i as u32;
+            let at = UVec3::new(i % size.x, i / size.x % size.y, i / (size.x * size.y)) / 2;
+            let to = &mut level[(at.x + n.x * (at.y + n.y * at.z)) as usize];
+            *to = [to[0].min(*low), to[1].max(*high), to[2].max(*slope)];
+        }
+        levels.push(level);
+        size = n;
+    }
+    levels
 }
 
 fn kind(form: &Form) -> u32 {

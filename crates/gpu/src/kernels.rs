@@ -262,7 +262,8 @@ fn kernel(
         entry_point: Some(entry),
         compilation_options: wgpu::PipelineCompilationOptions {
             constants: &constants,
-            ..Default::default()
+            // Every pass writes its workgroup's memory before it reads it.
+            zero_initialize_workgroup_memory: false,
         },
         cache: None,
     });

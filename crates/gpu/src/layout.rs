@@ -65,6 +65,7 @@ pub(crate) const INK: u32 = 5;
 /// Words of a brick's record.
 pub(crate) const STRIDE: usize = 104;
 pub(crate) const ALIVE: usize = 8;
+pub(crate) const TABLE: usize = 9;
 /// Paintings within a painting, one in the other, at most.
 pub(crate) const NESTED: usize = 3;
 /// Values on the stack of the tape of a painting's solid at most, less one for safety.

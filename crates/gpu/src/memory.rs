@@ -41,6 +41,18 @@ impl Room {
         self.hash() + 5 * self.chunks
     }
 
+    /// Whether there is as much room of each kind.
+    pub fn covers(&self, wanted: &Room) -> bool {
+        self.quantised == wanted.quantised
+            && self.slots >= wanted.slots
+            && self.chunks >= wanted.chunks
+            && self.tables >= wanted.tables
+            && self.tape >= wanted.tape
+            && self.vertices >= wanted.vertices
+            && self.triangles >= wanted.triangles
+            && self.volumes >= wanted.volumes
+    }
+
     /// Words of values of one brick.
     pub fn brick(&self) -> u32 {
         if self.quantised { 256 } else { 512 }

@@ -2,7 +2,7 @@
 
 use crate::kernels::{Kernel, binding};
 use crate::layout::{ROW, Stage};
-use crate::memory::{Buffers, MOST_STAGES, STAGE_BYTES};
+use crate::memory::{Buffers, MOST_STAGES, Room, STAGE_BYTES};
 use crate::{Gpu, GpuError};
 
 /// How many groups a pass has.
@@ -42,6 +42,15 @@ impl<'a> Recorder<'a> {
             times,
             timed: 0,
         }
+    }
+
+    /// Nothing in the page table.
+    pub fn clear_pages(&mut self, room: &Room) {
+        let pages = &self.buffers.pages;
+        let hash = 4 * u64::from(room.hash());
+        self.encoder.clear_buffer(pages, 0, Some(hash));
+        let tables = 4 * u64::from(room.table_base());
+        self.encoder.clear_buffer(pages, tables, None);
     }
 
     /// Runs some passes one after the other; their time is taken together.

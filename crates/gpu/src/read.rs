@@ -1,5 +1,6 @@
 //! Fields back in main memory, and from there.
 
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::IVec3;
@@ -8,10 +9,10 @@ use midair_field::{BRICK, Brick, Grid};
 use crate::Gpu;
 use crate::error::GpuError;
 use crate::kernels::For;
-use crate::layout::{ALIVE, INSIDE, NEAR, NONE, STRIDE, Stage, counter};
+use crate::layout::{ALIVE, INSIDE, NEAR, NONE, STRIDE, Stage, TABLE, counter};
 use crate::memory::{Room, buffer, read_back};
 use crate::passes::{Groups, Recorder};
-use crate::solid::{GpuSolid, SolidOptions, corners, extract};
+use crate::solid::{GpuSolid, SolidOptions, corners, extract_all};
 
 /// Nodes of a brick.
 const NODES: usize = BRICK * BRICK * BRICK;
@@ -98,7 +99,7 @@ impl GpuSolid {
     /// As [`GpuSolid::make`].
     pub fn from_grid(gpu: &Arc<Gpu>, grid: &Grid) -> Result<Self, GpuError> {
         let bricks = explicit(grid);
-        let mut tables: std::collections::BTreeMap<[i32; 3], Vec<u32>> = Default::default();
+        let mut tables: BTreeMap<[i32; 3], Vec<u32>> = Default::default();
         let (mut values, mut records) = (Vec::new(), Vec::new());
         let mut enter = |c: IVec3, entry: u32| {
             let at = ((c.z & 7) << 6 | (c.y & 7) << 3 | c.x & 7) as usize;
@@ -120,6 +121,15 @@ impl GpuSolid {
                     records.extend(record);
                 }
             }
+        }
+        let places: HashMap<[i32; 3], u32> = tables.keys().copied().zip(0..).collect();
+        for record in records.chunks_exact_mut(STRIDE) {
+            let at = [
+                record[0] as i32 >> 3,
+                record[1] as i32 >> 3,
+                record[2] as i32 >> 3,
+            ];
+            record[TABLE] = places.get(&at).copied().unwrap_or(NONE);
         }
         let slots = (records.len() / STRIDE) as u32;
         let room = Room {
@@ -169,7 +179,7 @@ impl GpuSolid {
         recorder.pass("extract", |p| {
             let groups = Groups::Count((tables.len() as u32).div_ceil(64));
             p.run(&k.link, Stage::default(), groups, &[]);
-            extract(p, k, &room, false);
+            extract_all(p, k, &room);
         });
         recorder.submit()?;
         let told = solid.copy(&solid.buffers.counters, 4 * counter::COUNT as u64)?;

@@ -16,7 +16,7 @@ use crate::layout::{Globals, counter};
 use crate::memory::{Buffers, Room};
 use room::{asked, guess, holds, larger};
 use run::bricks_touching;
-pub(crate) use run::{corners, extract};
+pub(crate) use run::{corners, extract_all};
 
 /// How a solid is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -272,7 +272,13 @@ impl GpuSolid {
         )))
     }
 
-    fn grow(&mut self, room: Room) -> Result<(), GpuError> {
+    /// What it was made of is no longer what it holds.
+    pub(crate) fn forget(&mut self) {
+        self.program = None;
+        self.meshes.clear();
+    }
+
+    pub(crate) fn grow(&mut self, room: Room) -> Result<(), GpuError> {
         room.check(&self.gpu)?;
         self.buffers = Arc::new(Buffers::new(&self.gpu, &room)?);
         self.room = room;

@@ -13,7 +13,7 @@ use crate::flatten::Flat;
 use crate::kernels::{For, Kernels};
 use crate::layout::{Block, Stage, counter};
 use crate::memory::{Room, TIMES, read_back};
-use crate::passes::{Groups, Recorder};
+use crate::passes::{Groups, Passes, Recorder};
 
 /// Steps around a crossing where values are there, as the processor has it.
 const AROUND: f32 = 2.0;
@@ -124,10 +124,7 @@ impl GpuSolid {
         let k = gpu.kernels(self.made_for)?;
         let times = self.times();
         let mut recorder = Recorder::new(&gpu, &buffers, times.as_ref());
-        let hash = 4 * u64::from(self.room.hash());
-        recorder.encoder.clear_buffer(&buffers.pages, 0, Some(hash));
-        let tables = 4 * u64::from(self.room.table_base());
-        recorder.encoder.clear_buffer(&buffers.pages, tables, None);
+        recorder.clear_pages(&self.room);
         let list = descend(
             &mut recorder,
             k,
@@ -317,15 +314,23 @@ fn descend(
     })
 }
 
-/// Classify, count, emit: all slots, or those of an edit.
-pub(crate) fn extract(p: &mut crate::passes::Passes, k: &Kernels, room: &Room, update: bool) {
+/// Signs, counts and the surface of all slots, whose values something else than `fuse` has made.
+pub(crate) fn extract_all(p: &mut Passes, k: &Kernels, room: &Room) {
+    let groups = p.find(&k.args, counter::SLOTS, room.slots, 1, 1);
+    for kernel in [&k.classify, &k.count, &k.emit] {
+        p.run(kernel, Stage::default(), groups, &[]);
+    }
+}
+
+/// Counts and the surface of all slots that were fused, or of those of an edit.
+fn extract(p: &mut Passes, k: &Kernels, room: &Room, update: bool) {
     let counted = if update {
         counter::WORK
     } else {
         counter::SLOTS
     };
     let groups = p.find(&k.args, counted, room.slots, 1, 1);
-    for kernel in [&k.classify, &k.count, &k.emit] {
+    for kernel in [&k.count, &k.emit] {
         p.run(kernel, Stage::default(), groups, &[]);
     }
 }
