@@ -187,7 +187,7 @@ fn build(stage: Stage, headset: Option<Headset>, places: Places, begin: Begin) -
             ));
         }
         Stage::Picture => {
-            app.add_plugins(RoomPlugin);
+            app.add_plugins((RoomPlugin, shot::MakingPlugin));
         }
         Stage::Unseen => {
             app.add_plugins(FlatscreenPlugin);

@@ -29,12 +29,22 @@ const PATIENCE: Duration = Duration::from_secs(120);
 struct Taken(Option<Image>);
 
 /// How many pipelines are still made: what needs one of them is not seen until then.
-#[derive(Clone, Default)]
+#[derive(Resource, Clone)]
 struct Making(Arc<AtomicUsize>);
 
 impl Making {
-    fn watch(app: &mut App) -> Self {
-        let making = Self::default();
+    fn any(&self) -> bool {
+        self.0.load(Ordering::Relaxed) > 0
+    }
+}
+
+/// Watches over what is still made. To be added before the app is finished: what renders then leaves it for a thread of its own.
+pub(crate) struct MakingPlugin;
+
+impl Plugin for MakingPlugin {
+    fn build(&self, app: &mut App) {
+        // Not looked at yet is not done.
+        let making = Making(Arc::new(AtomicUsize::new(1)));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             let count = making.0.clone();
             let note = move |cache: Res<PipelineCache>| {
@@ -42,11 +52,7 @@ impl Making {
             };
             render.add_systems(Render, note.in_set(RenderSystems::Cleanup));
         }
-        making
-    }
-
-    fn any(&self) -> bool {
-        self.0.load(Ordering::Relaxed) > 0
+        app.insert_resource(making);
     }
 }
 
@@ -59,6 +65,8 @@ pub(crate) enum SeenBy {
     Headset,
 }
 
+/// Frames with nothing left to make before a picture is taken: what a frame asks for is known in the next, and shadows settle.
+const SETTLED: u32 = 6;
 /// Frames in which panels open.
 const PANELS: u32 = 40;
 /// Of the eyes, in metres.
@@ -108,13 +116,13 @@ pub(crate) fn picture(app: &mut App, file: &Path, seen_by: SeenBy) -> Result<()>
     }
     // What is marked is drawn as a person would see it. Shadows and pipelines settle in the first frames.
     app.insert_resource(Delivery::AsTheyCome);
-    let making = Making::watch(app);
     let began = Instant::now();
-    let mut frames = 0;
-    let is_busy = |app: &App| making.any() || app.world().resource::<Preview>().is_busy();
-    while frames < 8 || (is_busy(app) && began.elapsed() < PATIENCE) {
+    let mut settled = 0;
+    while settled < SETTLED && began.elapsed() < PATIENCE {
         app.update();
-        frames += 1;
+        let world = app.world();
+        let busy = world.resource::<Making>().any() || world.resource::<Preview>().is_busy();
+        settled = if busy { 0 } else { settled + 1 };
     }
     app.init_resource::<Taken>();
     app.world_mut().spawn(Screenshot::image(target)).observe(
@@ -266,7 +274,7 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
         }
     }
     let mut asks = asks.into_iter();
-    let making = Making::watch(app);
+    app.add_plugins(MakingPlugin);
     let began = Instant::now();
     let mut frame = 0;
     let mut settled = 0;
@@ -277,6 +285,7 @@ pub(crate) fn window(app: &mut App, file: PathBuf, size: Option<(u32, u32)>, ask
         move |evaluations: Res<Evaluations>,
               thumbnails: Res<Thumbnails>,
               preview: Res<Preview>,
+              making: Res<Making>,
               mut taken: ResMut<Taken>,
               mut cameras: Query<&mut Camera, With<Eye>>,
               mut ask: MessageWriter<Command>,
