@@ -1,13 +1,21 @@
 //! What somebody meets who tries a mode for the first time, with mouse and keyboard.
 
+use bevy::input::keyboard::{Key, NativeKey};
 use bevy::prelude::*;
 use bevy_egui::{EguiContext, PrimaryEguiContext};
 use midair_brush::BRUSH;
+use midair_document::{Edit, ObjectId};
+use midair_field::Op;
+use midair_flatscreen::Gizmo;
 use midair_studio::command::Command;
+use midair_studio::hands::Action;
+use midair_studio::notice::Notices;
+use midair_studio::objects::Ask;
 use midair_studio::panel::egui::{Id, containers::panel::PanelState};
 use midair_studio::settings::{BrushSkeleton, Settings};
-use midair_studio::tools::Hints;
-use midair_sweep::{Draft, SWEEP, Solo};
+use midair_studio::show::{ObjectMap, Readouts};
+use midair_studio::tools::{HintKey, Hints, ToolId, Tools};
+use midair_sweep::{Draft, SWEEP, Solo, Wires};
 
 use crate::desk::Desk;
 
@@ -24,6 +32,34 @@ impl Desk {
         let mut context = contexts.single_mut(world).unwrap();
         let state = PanelState::load(context.get_mut(), Id::new("left"));
         state.expect("a column at the left").outer_rect.width()
+    }
+
+    fn was_told(&self, words: &str) -> bool {
+        let notices = self.world().resource::<Notices>();
+        notices.recent(60.0).any(|n| n.text.contains(words))
+    }
+
+    fn is_drawn(&self, id: ObjectId) -> bool {
+        let entity = self.world().resource::<ObjectMap>().get(id);
+        entity.is_some_and(|e| self.world().get::<Mesh3d>(e).is_some())
+    }
+
+    fn in_mode(&self, id: &str) -> bool {
+        let tools = self.world().resource::<Tools>();
+        tools.active().is_some_and(|t| t.id.as_str() == id)
+    }
+
+    /// A sheet that is swept upwards, and the frame after it was let go of.
+    fn sheet(&mut self) -> ObjectId {
+        self.says(Command::Mode(SWEEP));
+        let [left, right] = [Vec2::new(560.0, 400.0), Vec2::new(720.0, 400.0)];
+        let (down, up) = (Vec2::new(0.0, 60.0), Vec2::new(0.0, -120.0));
+        self.drag(MouseButton::Left, left, left + down);
+        self.drag(MouseButton::Left, right, right + down);
+        self.drag(MouseButton::Left, left, left + up);
+        self.drag(MouseButton::Left, right, right + up);
+        let (sheet, _) = self.document().objects().next_back().expect("a sheet");
+        sheet
     }
 
     fn status(&self) -> &str {
@@ -91,7 +127,7 @@ fn in_sweep_a_click_selects_what_is_there_and_is_no_way() {
     desk.settle();
     assert_eq!(desk.document().len(), around + 1, "{:?}", desk.warnings());
     let (sheet, _) = desk.document().objects().next_back().unwrap();
-    desk.says(Command::Objects(midair_studio::objects::Ask::SelectNone));
+    desk.says(Command::Objects(Ask::SelectNone));
     assert_eq!(desk.selected(), []);
     let ready = draft(&desk);
     let at = desk.hover(sheet);
@@ -99,4 +135,154 @@ fn in_sweep_a_click_selects_what_is_there_and_is_no_way() {
     desk.click();
     assert_eq!(desk.selected(), [sheet]);
     assert_eq!(draft(&desk), ready, "and the ends stand where they stood");
+}
+
+const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
+
+#[test]
+fn what_was_swept_is_a_net_until_it_is_seen() {
+    let mut desk = Desk::new();
+    let sheet = desk.sheet();
+    let waits = |desk: &Desk| desk.world().resource::<Wires>().waits();
+    let mut left = 2000;
+    while !desk.is_drawn(sheet) {
+        assert!(waits(&desk), "nothing of it would be seen");
+        desk.frame();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        left -= 1;
+        assert!(left > 0, "never drawn");
+    }
+    desk.wait(20);
+    assert!(!waits(&desk));
+    let world = desk.app.world_mut();
+    let mut names = world.query::<&Name>();
+    assert!(names.iter(world).all(|n| n.as_str() != "Wires"));
+}
+
+#[test]
+fn what_would_close_a_surface_is_said_where_it_was_carried() {
+    let mut desk = Desk::new();
+    let sheet = desk.sheet();
+    desk.settle();
+    desk.strike(&[(KeyCode::ShiftLeft, Key::Shift), (KeyCode::Digit1, PLAIN)]);
+    assert!(desk.in_mode("csg"));
+    let hints = desk.world().resource::<Hints>();
+    let says = |action| {
+        let hint = hints
+            .buttons
+            .iter()
+            .find(|h| h.action == HintKey::Action(action));
+        hint.map(|h| h.does.as_str())
+    };
+    assert_eq!(says(Action::Finish), Some("make it 20.0 mm thick"));
+    assert_eq!(says(Action::Cancel), Some("leave it"));
+    desk.strike_one(KeyCode::Enter);
+    assert_eq!(desk.document().pending(), [(sheet, Op::Union)]);
+    assert!(!desk.status().contains("open"), "{}", desk.status());
+}
+
+#[test]
+fn a_cut_that_takes_nothing_away_is_told() {
+    let mut desk = Desk::new();
+    let (cube, ball) = (desk.thing("solid/cube"), desk.thing("solid/sphere"));
+    for (id, key) in [(cube, KeyCode::KeyU), (ball, KeyCode::KeyM)] {
+        desk.hover(id);
+        desk.strike(&[(key, PLAIN)]);
+    }
+    desk.strike_one(KeyCode::Enter);
+    assert_eq!(desk.document().len(), 1, "{:?}", desk.warnings());
+    assert!(desk.was_told("Sphere takes nothing away"));
+    // Where it does, nothing is said.
+    let mut desk = Desk::new();
+    let (cube, ball) = (desk.thing("solid/cube"), desk.thing("solid/sphere"));
+    let placement = desk.document().object(cube).unwrap().placement;
+    desk.says(Command::Objects(Ask::Place(vec![(ball, placement)])));
+    let pending = vec![(cube, Op::Union), (ball, Op::Subtract)];
+    desk.says(Command::Edit(Edit::SetPending { pending }));
+    desk.strike_one(KeyCode::Enter);
+    assert!(!desk.was_told("takes nothing away"));
+}
+
+#[test]
+fn what_is_pointed_at_is_carried_where_nothing_is_selected() {
+    let mut desk = Desk::new();
+    let cube = desk.thing("solid/cube");
+    desk.says(Command::Objects(Ask::SelectNone));
+    desk.hover(cube);
+    desk.strike(&[(KeyCode::ShiftLeft, Key::Shift), (KeyCode::Digit4, PLAIN)]);
+    assert!(desk.in_mode("brush"), "{:?}", desk.warnings());
+    assert!(desk.was_told("is the volume brush now"));
+}
+
+#[test]
+fn where_a_press_draws_handles_come_when_they_are_asked_for() {
+    let mut desk = Desk::new();
+    let cube = desk.thing("solid/cube");
+    desk.says(Command::Objects(Ask::Select {
+        ids: vec![cube],
+        how: midair_studio::objects::How::Set,
+    }));
+    let stands = desk.stands(cube);
+    let at = desk.handle(stands, Vec3::Y);
+    let taken = |desk: &mut Desk| {
+        desk.glide(at);
+        desk.world().resource::<Gizmo>().has_pointer()
+    };
+    assert!(taken(&mut desk));
+    desk.says(Command::Mode(BRUSH));
+    assert!(!taken(&mut desk), "a press paints");
+    desk.strike(&[(KeyCode::KeyG, PLAIN)]);
+    assert!(taken(&mut desk));
+    desk.says(Command::Mode(ToolId::new("csg")));
+    desk.says(Command::Mode(BRUSH));
+    assert!(!taken(&mut desk));
+}
+
+#[test]
+fn a_painting_is_as_large_as_what_is_seen_of_it() {
+    let mut desk = Desk::new();
+    let cube = desk.thing("solid/cube");
+    desk.says(Command::Mode(BRUSH));
+    desk.hover(cube);
+    desk.strike_one(KeyCode::Enter);
+    desk.click();
+    desk.settle();
+    desk.says(Command::Objects(Ask::Select {
+        ids: vec![cube],
+        how: midair_studio::objects::How::Set,
+    }));
+    let readouts = &desk.world().resource::<Readouts>().0;
+    let size = readouts
+        .iter()
+        .find(|r| r.text.contains('×'))
+        .expect("its size");
+    let sides: Vec<f32> = size
+        .text
+        .split([' ', '×'])
+        .filter_map(|w| w.parse().ok())
+        .collect();
+    // A cube of 400 mm and half of a ball of 30 mm.
+    assert!(
+        sides.iter().all(|s| (395.0..445.0).contains(s)),
+        "{}",
+        size.text
+    );
+}
+
+#[test]
+fn undo_that_is_struck_twice_within_a_frame_is_two_steps() {
+    let mut desk = Desk::new();
+    for what in ["solid/cube", "solid/sphere", "solid/cone"] {
+        desk.thing(what);
+    }
+    desk.glide(Vec2::new(900.0, 200.0));
+    desk.key(KeyCode::ControlLeft, Key::Control, true);
+    desk.frame();
+    for down in [true, false, true, false] {
+        desk.key(KeyCode::KeyZ, PLAIN, down);
+    }
+    desk.frame();
+    desk.key(KeyCode::ControlLeft, Key::Control, false);
+    desk.wait(3);
+    assert_eq!(desk.document().len(), 1);
 }

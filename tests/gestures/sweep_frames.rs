@@ -38,7 +38,9 @@ fn a_frame_sends_what_is_new_and_not_the_surface() {
     println!("bytes sent in a frame at 20 to 60 curves {early}, at 240 to {ribs} {late}");
     assert_eq!(early, late);
     studio.let_go(Side::Right, Action::Act);
-    studio.frames(3);
+    // Once its surface is there and was seen for a moment.
+    studio.settle();
+    studio.frames(20);
     assert_eq!(
         studio.world().resource::<Wires>().pieces(),
         0,

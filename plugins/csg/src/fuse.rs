@@ -8,6 +8,7 @@ use midair_studio::{
     notice::Notices,
     project::Project,
     show::Drafts,
+    snap::box_of,
 };
 
 /// What one press of update will do.
@@ -65,6 +66,37 @@ pub(crate) fn drafted_recipe(document: &Document, drafts: &Drafts) -> Option<(Re
         })
         .collect::<Option<Vec<_>>>()?;
     Some((Recipe::new(Node::Solid(operands)), origin))
+}
+
+/// The marked operands that are to be taken away and stand clear of all before them: what is marked so would vanish, and
+/// nothing else would change. Goes by boxes, so what it names does nothing for certain.
+fn idle_cuts(document: &Document) -> Vec<&str> {
+    let mut before: Option<(Vec3, Vec3)> = None;
+    let mut idle = Vec::new();
+    for (i, &(id, op)) in document.pending().iter().enumerate() {
+        let Some(object) = document.object(id) else {
+            continue;
+        };
+        let own = object.recipe().map(Recipe::bounds);
+        let own = own.filter(|b| !b.is_empty());
+        let own = own.map(|b| box_of(&object.placement, (b.min, b.max)));
+        let common = before.zip(own).map(|((a, b), (c, d))| (a.max(c), b.min(d)));
+        let common = common.filter(|(low, high)| low.cmple(*high).all());
+        match op {
+            Op::Subtract if i > 0 => {
+                if common.is_none() {
+                    idle.push(&*object.name);
+                }
+            }
+            Op::Intersect if i > 0 => before = common,
+            // The first one is what the others join.
+            _ => {
+                let both = before.zip(own).map(|((a, b), (c, d))| (a.min(c), b.max(d)));
+                before = both.or(before).or(own);
+            }
+        }
+    }
+    idle
 }
 
 /// Carries the marks out as one step that can be undone. Returns whether anything was done.
@@ -147,6 +179,15 @@ fn fuse(
         result.group = first.group;
     }
     let key = Key::new(&recipe, document.step());
+    let told = match idle_cuts(document)[..] {
+        [] => None,
+        [name] => Some(format!(
+            "{name} takes nothing away: it stands clear of the others. Undo, move it into them, then update again."
+        )),
+        [name, ..] => Some(format!(
+            "{name} and others take nothing away: they stand clear. Undo, move them where they are to cut, then update again."
+        )),
+    };
     let mut edits: Vec<_> = document
         .pending()
         .iter()
@@ -159,6 +200,9 @@ fn fuse(
     let done = project.commit(format!("Fuse {count}"), edits, notices);
     if done {
         evaluations.count_update(key);
+        if let Some(told) = told {
+            notices.info(told);
+        }
     }
     done
 }

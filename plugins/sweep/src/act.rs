@@ -17,7 +17,7 @@ use midair_swept::{MAX_RIBS, Rib, smoothed};
 use crate::ends::{aimed, end, is_there};
 use crate::phase::{Draft, Phase};
 use crate::solo::{Doing, Solo, Then};
-use crate::{EPSILON, ask, edit, write};
+use crate::{EPSILON, Wires, ask, edit, write};
 
 /// How far one click of the cross moves w.
 const CLICK: f32 = 0.25;
@@ -406,7 +406,7 @@ pub(crate) fn commit(
     mut project: ResMut<Project>,
     mut selection: ResMut<Selection>,
     (shelf, evaluations): (Res<Shelf>, Res<Evaluations>),
-    mut looks: ResMut<write::Looks>,
+    (mut looks, mut wires): (ResMut<write::Looks>, ResMut<Wires>),
     mut notices: ResMut<Notices>,
 ) {
     if !draft.done {
@@ -452,6 +452,7 @@ pub(crate) fn commit(
             let done = project.commit_live(made.step, made.edits, &mut notices);
             if done {
                 selection.set_if_neq(Selection(vec![made.object]));
+                wires.wait_for(made.object);
                 looks.look(name, sweep);
             }
             done

@@ -13,7 +13,8 @@ use midair_studio::{
     project::{Project, Selection},
     settings::{Settings, SweepItem, SweepShape},
     show::{to_bevy_mesh, transform},
-    tools::ToolId,
+    tools::{Hint, HintKey, Hints, ToolId},
+    units::length,
 };
 
 use crate::phase::{Draft, Offer, Phase};
@@ -129,6 +130,45 @@ pub(crate) fn claim(draft: Res<Draft>, mut reserved: ResMut<Reserved>) {
     }
 }
 
+/// While there is an offer, every mode says which buttons answer it.
+pub(crate) fn say(
+    draft: Res<Draft>,
+    project: Res<Project>,
+    settings: Res<Settings>,
+    mut hints: ResMut<Hints>,
+) {
+    let Some(offer) = &draft.offer else { return };
+    let sheets = || {
+        let objects = offer.objects.iter();
+        objects.filter_map(|&id| project.document().object(id)?.sheet())
+    };
+    let thick = length(offer.thickness, settings.units.length);
+    let does = match (
+        sheets().any(|s| s.profile == Profile::Sheet),
+        sheets().any(|s| s.profile == Profile::Tube),
+    ) {
+        (true, false) => format!("make it {thick} thick"),
+        (false, _) => "cap its ends".to_owned(),
+        (true, true) => format!("make surfaces {thick} thick, cap tubes"),
+    };
+    hints.buttons.retain(|h| {
+        ![Action::Finish, Action::Cancel]
+            .map(HintKey::Action)
+            .contains(&h.action)
+    });
+    "It is open: the ghost closes it".clone_into(&mut hints.status);
+    let answers = [
+        (Action::Finish, does),
+        (Action::Cancel, "leave it".to_owned()),
+    ];
+    let answers = answers.map(|(action, does)| Hint {
+        side: None,
+        action: HintKey::Action(action),
+        does,
+    });
+    hints.buttons.splice(0..0, answers);
+}
+
 /// What it would be with its thickness.
 fn closed(sweep: &Sweep, thickness: f32) -> Sweep {
     match sweep.profile {
@@ -191,7 +231,7 @@ pub(crate) fn accept(
                 pending.extend(objects.iter().map(|&o| (o, Op::Union)));
                 edits.push(Edit::SetPending { pending });
             }
-            project.commit("Close", edits, &mut notices)
+            project.commit("Make solid", edits, &mut notices)
         }
         Err(reason) => {
             notices.warn(reason);

@@ -95,6 +95,8 @@ impl Plugin for SweepPlugin {
                 carry::claim.in_set(StudioSet::Pick),
                 carry::accept.in_set(StudioSet::Act).before(act::ends),
                 carry::ghost.in_set(StudioSet::Rebuild),
+                // After the mode has said what its buttons do.
+                carry::say.after(StudioSet::Cue),
             ),
         );
     }

@@ -8,8 +8,12 @@ use bevy::asset::RenderAssetUsages;
 use bevy::light::NotShadowCaster;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
+use midair_document::ObjectId;
 use midair_studio::settings::{Settings, SweepShape};
-use midair_studio::{project::Project, show::transform};
+use midair_studio::{
+    project::Project,
+    show::{ObjectMap, transform},
+};
 use midair_swept::{Net, Rib};
 
 use crate::edit;
@@ -17,6 +21,9 @@ use crate::phase::{Draft, Phase};
 
 /// Curves in one piece.
 pub const PIECE: usize = 16;
+
+/// Seconds for which the net stays after its surface is there: a picture or two later it is drawn.
+const STAYS: f32 = 0.12;
 
 /// The pieces of the net.
 #[derive(Resource, Default)]
@@ -34,6 +41,8 @@ pub struct Wires {
     seam: Option<Rib>,
     bytes: usize,
     bent: bool,
+    /// What was swept is not seen yet: the net stays until it has been for so many seconds.
+    waits: Option<(ObjectId, f32)>,
     /// The curves of the last piece and their points: only the one that the hands hold is new in a frame.
     known: (Vec<Rib>, Vec<Vec3>),
 }
@@ -49,7 +58,18 @@ impl Wires {
         self.pieces.len()
     }
 
+    /// Whether what was swept last is still shown as a net.
+    pub fn waits(&self) -> bool {
+        self.waits.is_some()
+    }
+
+    /// The net stays until the object it became is seen.
+    pub(crate) fn wait_for(&mut self, object: ObjectId) {
+        self.waits = Some((object, STAYS));
+    }
+
     pub(crate) fn clear(&mut self, commands: &mut Commands) {
+        self.waits = None;
         for entity in self.pieces.drain(..) {
             commands.entity(entity).try_despawn();
         }
@@ -87,7 +107,11 @@ impl Wires {
 pub(crate) fn draw(
     draft: Res<Draft>,
     settings: Res<Settings>,
-    project: Res<Project>,
+    (project, time): (Res<Project>, Res<Time>),
+    (map, drawn_as): (
+        Res<ObjectMap>,
+        Query<(), Or<(With<Mesh3d>, With<Children>)>>,
+    ),
     mut wires: ResMut<Wires>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -113,6 +137,16 @@ pub(crate) fn draw(
         return;
     }
     if !draft.is_sweeping() || draft.ribs.is_empty() {
+        if let Some((object, left)) = &mut wires.waits {
+            let seen = map.get(*object).is_some_and(|e| drawn_as.contains(e));
+            if seen {
+                *left -= time.delta_secs();
+            }
+            // Taken back, or in the way of nothing any more.
+            if project.document().object(*object).is_some() && *left > 0.0 {
+                return;
+            }
+        }
         if !wires.pieces.is_empty() || wires.tail.is_some() {
             wires.clear(&mut commands);
         }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use bevy::math::bounding::Aabb3d;
 use bevy::prelude::*;
+use bevy_mod_outline::ATTRIBUTE_OUTLINE_NORMAL;
 use bevy_rapier3d::rapier::prelude::{Pose, SharedShape, TriMesh as Trimesh, TriMeshFlags};
 use midair_field::Placement;
 use midair_field::Recipe;
@@ -17,7 +18,7 @@ use midair_solid::{Clones, Solid, SolidError, clones, own_surface};
 use super::backend::{Asked, Backend};
 use super::early::Early;
 use super::{Key, Update};
-use crate::show::to_bevy_mesh;
+use crate::show::{outward, to_bevy_mesh};
 
 /// A solid, made.
 pub struct Made {
@@ -131,9 +132,9 @@ impl Made {
         let drawn = match &self.look {
             Look::Smooth => to_bevy_mesh(mesh),
             Look::Edged(first) => to_bevy_mesh(&mesh.parted(*first)),
-            Look::Pictured(uv) => {
-                to_bevy_mesh(mesh).with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv.clone())
-            }
+            Look::Pictured(uv) => to_bevy_mesh(mesh)
+                .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uv.clone())
+                .with_inserted_attribute(ATTRIBUTE_OUTLINE_NORMAL, outward(mesh)),
             Look::Creased(uv) => {
                 let (sharp, more) = mesh.creased(SHARP);
                 let own = more.iter().filter_map(|&v| uv.get(v as usize));

@@ -1,13 +1,15 @@
 //! The ruler: how far it is between two points, and how large what is selected is.
 
 use bevy::prelude::*;
+use midair_document::Object;
 use serde::{Deserialize, Serialize};
 
 use crate::StudioSet;
 use crate::command::Command;
+use crate::evaluate::{Evaluations, Key};
 use crate::project::{Project, Selection};
 use crate::settings::Settings;
-use crate::show::{Drafts, Readouts};
+use crate::show::{Drafts, Readouts, display_steps};
 use crate::snap::{box_of, own_box};
 use crate::units::{length, size};
 
@@ -98,8 +100,44 @@ fn ask(mut commands: MessageReader<Command>, mut ruler: ResMut<Ruler>) {
     }
 }
 
+/// The box of what was made of an object, in its own frame: where that lies further in than what its recipe could fill,
+/// as where something is cut off or a brush's reach is empty.
+fn made_box(project: &Project, evaluations: &Evaluations, object: &Object) -> Option<(Vec3, Vec3)> {
+    let (low, high) = own_box(project, object)?;
+    let document = project.document();
+    let made = object.recipe().and_then(|recipe| {
+        let steps = display_steps(document, object, recipe).into_iter();
+        let mut keys = steps.map(|step| Key::new(recipe, step));
+        keys.find_map(|key| Some((key.step(), evaluations.made(&key)?.bounds)))
+    });
+    let Some((step, made)) = made.filter(|(_, made)| !made.is_empty()) else {
+        return Some((low, high));
+    };
+    // A surface that is made of facets lies a little within its shape: that is no other size.
+    let in_by = |by: Vec3| by.cmpgt(Vec3::splat(step));
+    Some((
+        Vec3::select(in_by(made.min - low), made.min, low),
+        Vec3::select(in_by(high - made.max), made.max, high),
+    ))
+}
+
+/// The box in the world of what is selected, as large as what is seen of it.
+fn seen_box(
+    project: &Project,
+    evaluations: &Evaluations,
+    selection: &Selection,
+    drafts: &Drafts,
+) -> Option<(Vec3, Vec3)> {
+    let boxes = selection.0.iter().filter_map(|&id| {
+        let object = project.document().object(id)?;
+        let placement = drafts.get(id).unwrap_or(&object.placement);
+        Some(box_of(placement, made_box(project, evaluations, object)?))
+    });
+    boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+}
+
 fn say(
-    project: Res<Project>,
+    (project, evaluations): (Res<Project>, Res<Evaluations>),
     selection: Res<Selection>,
     drafts: Res<Drafts>,
     ruler: Res<Ruler>,
@@ -110,7 +148,7 @@ fn say(
     if let Some((a, b)) = ruler.ends() {
         readouts.say(a.midpoint(b), length(a.distance(b), unit));
     }
-    if let Some((low, high)) = selected_box(&project, &selection, &drafts) {
+    if let Some((low, high)) = seen_box(&project, &evaluations, &selection, &drafts) {
         let foot = Vec3::new(low.x.midpoint(high.x), low.y, high.z);
         readouts.say(foot, size(high - low, unit));
     }

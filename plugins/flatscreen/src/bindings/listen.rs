@@ -150,6 +150,12 @@ impl Controls {
         self.fired.contains(&control)
     }
 
+    /// How many times it went down in this frame: within a slow one a key can be struck more than once.
+    /// One that is held fires again.
+    pub fn times(&self, control: Control) -> usize {
+        self.fired.iter().filter(|c| **c == control).count()
+    }
+
     /// Whether it is down by a key or button of `device`.
     pub fn pressed_on(&self, control: Control, device: Device) -> bool {
         self.bounds
@@ -200,11 +206,13 @@ pub(crate) fn listen(
         controls.repeats.clear();
     }
     let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
+    let struck: Vec<_> = struck.read().cloned().collect();
     taps(&keys, &mouse, &pads, &mut store);
-    chords(struck.read(), &mut store);
+    chords(struck.iter(), &mut store);
     let controls = &mut *controls;
     controls.choose(&keys, &mouse, travelled, &pads);
     controls.update(&store, *attention, time.delta_secs());
+    controls.strike_again(&struck);
 }
 
 /// A tap that is over within one frame is still a tap.
@@ -358,6 +366,22 @@ impl Controls {
             }
         }
         self.repeat(dt);
+    }
+
+    /// Keys that were struck more than once in this frame: states know only of one time.
+    fn strike_again(&mut self, struck: &[KeyboardInput]) {
+        for bound in self.bounds.iter().filter(|b| b.active) {
+            let Part::Key(key) = self.mains[bound.main].0 else {
+                continue;
+            };
+            let strikes = struck
+                .iter()
+                .filter(|e| e.key_code == key && e.state.is_pressed() && !e.repeat)
+                .count();
+            let known = usize::from(self.state.just_pressed(&bound.control));
+            let more = strikes.saturating_sub(known);
+            self.fired.extend(std::iter::repeat_n(bound.control, more));
+        }
     }
 
     fn whole(&self, bound: &Bound, store: &CentralInputStore, pad: Entity) -> bool {

@@ -17,6 +17,7 @@ use midair_studio::{
     settings::{Settings, SnapSettings},
     show::{Drafts, Readouts},
     snap::{Snapper, box_of, own_box},
+    tools::Aim,
     units::length,
 };
 
@@ -35,6 +36,8 @@ use crate::pointer::Pointer;
 pub struct Gizmo {
     /// What they do; `None` while they are put away.
     pub mode: Option<Mode>,
+    /// They were asked for since the mode that draws was taken: there they would be in the way.
+    asked: bool,
     frame: Option<Frame>,
     hovered: Option<Handle>,
     drag: Option<Drag>,
@@ -57,6 +60,7 @@ impl Default for Gizmo {
     fn default() -> Self {
         Self {
             mode: Some(Mode::Move),
+            asked: false,
             frame: None,
             hovered: None,
             drag: None,
@@ -70,6 +74,11 @@ impl Gizmo {
         self.hovered.is_some() || self.drag.is_some()
     }
 
+    /// What the handles that are to be seen do: where a press draws, only those that were asked for.
+    fn shown(&self, draws: bool) -> Option<Mode> {
+        self.mode.filter(|_| self.asked || !draws)
+    }
+
     /// Whether a handle is dragged.
     pub fn is_dragged(&self) -> bool {
         self.drag.is_some()
@@ -77,14 +86,19 @@ impl Gizmo {
 }
 
 /// What the handles read: the document, the selection, what is in the hands.
-type Scene<'w> = (Res<'w, Project>, Res<'w, Selection>, Res<'w, Settings>);
+type Scene<'w> = (
+    Res<'w, Project>,
+    Res<'w, Selection>,
+    Res<'w, Settings>,
+    Res<'w, Aim>,
+);
 
 pub(crate) fn steer(
     controls: Res<Controls>,
     (screen, pointer, pad): (Res<Screen>, Res<Pointer>, Res<Pad>),
     windows: Query<&Window>,
     camera: Single<(&Camera, &Transform), With<Orbit>>,
-    (project, selection, settings): Scene,
+    (project, selection, settings, aim): Scene,
     input: Res<HandsInput>,
     mut gizmo: ResMut<Gizmo>,
     mut drafts: ResMut<Drafts>,
@@ -100,8 +114,12 @@ pub(crate) fn steer(
     ] {
         // Once more puts the handles away.
         if controls.just_pressed(control) && gizmo.drag.is_none() {
-            gizmo.mode = (gizmo.mode != Some(mode)).then_some(mode);
+            gizmo.mode = (gizmo.shown(aim.draws) != Some(mode)).then_some(mode);
+            gizmo.asked = true;
         }
+    }
+    if gizmo.asked && !aim.draws {
+        gizmo.asked = false;
     }
     let cursor = windows.iter().find_map(Window::cursor_position);
     let cursor = cursor.filter(|at| at.is_finite());
@@ -163,12 +181,12 @@ pub(crate) fn steer(
         .filter_map(|&id| Some((id, document.object(id)?.placement)))
         .collect();
     let away = pad.leads() || pointer.stretching || pointer.holds() || !drafts.is_empty();
-    let frame = gizmo
-        .mode
+    let mode = gizmo.shown(aim.draws);
+    let frame = mode
         .filter(|_| !before.is_empty() && !away)
         .map(|mode| stand(&project, mode, &before, eye.translation));
     let free = !screen.covers(cursor);
-    let hovered = match (gizmo.mode, frame, cursor.filter(|_| free)) {
+    let hovered = match (mode, frame, cursor.filter(|_| free)) {
         (Some(mode), Some(frame), Some(at)) => {
             frame.hit(mode, at, camera, &GlobalTransform::from(*eye))
         }
@@ -176,7 +194,7 @@ pub(crate) fn steer(
     };
     let taken =
         controls.just_pressed(Control::Act) && controls.pressed_on(Control::Act, Device::Keys);
-    if let (Some(mode), Some(frame), Some(handle), Some(ray)) = (gizmo.mode, frame, hovered, ray)
+    if let (Some(mode), Some(frame), Some(handle), Some(ray)) = (mode, frame, hovered, ray)
         && taken
         && let Some(from) = frame.reading(mode, handle, ray, *eye.up())
     {

@@ -4,11 +4,12 @@ use bevy::pbr::wireframe::{WireframeConfig, WireframePlugin};
 use bevy::prelude::*;
 use bevy::render::render_resource::WgpuFeatures;
 use bevy::render::renderer::RenderDevice;
-use bevy_mod_outline::{OutlinePlugin, OutlineStencil, OutlineVolume};
+use bevy_mod_outline::{OutlineFace, OutlinePlugin, OutlineStencil, OutlineVolume};
 
 use crate::StudioSet;
 use crate::materials::{Living, MaterialShelf};
 use crate::notice::Notices;
+use crate::project::Project;
 use crate::settings::{RoomKind, Settings};
 use crate::show::{Cue, Cues, ObjectEntity};
 
@@ -39,13 +40,14 @@ pub(super) fn line(room: RoomKind, cue: &Cue) -> Option<(Color, f32)> {
 fn edges(
     cues: Res<Cues>,
     settings: Res<Settings>,
-    (shelf, materials): (Res<MaterialShelf>, Res<Assets<Living>>),
+    (shelf, materials, project): (Res<MaterialShelf>, Res<Assets<Living>>, Res<Project>),
     mut objects: Query<
         (
             Entity,
             &ObjectEntity,
             Option<&MeshMaterial3d<Living>>,
             Option<&mut OutlineVolume>,
+            Option<&OutlineFace>,
         ),
         With<Mesh3d>,
     >,
@@ -58,19 +60,32 @@ fn edges(
         return;
     }
     let plain = Cue::default();
-    for (entity, object, living, volume) in &mut objects {
+    for (entity, object, living, volume, face) in &mut objects {
         let cue = cues.0.get(&object.0).unwrap_or(&plain);
         // What a material moves has a line of the material's own.
         let moved = living
             .and_then(|m| materials.get(&m.0))
             .is_some_and(|m| shelf.shifts(m.extension.place()));
         let wanted = line(settings.look.room, cue).filter(|_| !moved);
+        // An open surface is seen from behind as well.
+        let object = project.document().object(object.0);
+        let open = object.is_some_and(|o| o.sheet().is_some());
+        let sides = || {
+            if open {
+                OutlineFace::DoubleSided
+            } else {
+                OutlineFace::Front
+            }
+        };
+        if volume.is_some() && open != matches!(face, Some(OutlineFace::DoubleSided)) {
+            commands.entity(entity).insert(sides());
+        }
         match (wanted, volume) {
             (None, None) => {}
             (None, Some(_)) => {
                 commands
                     .entity(entity)
-                    .remove::<(OutlineVolume, OutlineStencil)>();
+                    .remove::<(OutlineVolume, OutlineStencil, OutlineFace)>();
             }
             (Some((colour, width)), Some(mut volume)) => {
                 if volume.colour != colour || volume.width != width {
@@ -86,6 +101,7 @@ fn edges(
                         colour,
                     },
                     OutlineStencil::default(),
+                    sides(),
                 ));
             }
         }
