@@ -389,11 +389,24 @@ pub(super) fn summary_of(values: &[f32]) -> [f32; 3] {
 }
 
 fn range_of(values: &[f32]) -> [f32; 2] {
-    values
+    // Eight side by side, in vector registers.
+    let (eights, rest) = values.as_chunks::<8>();
+    let (mut least, mut most) = ([f32::INFINITY; 8], [f32::NEG_INFINITY; 8]);
+    for eight in eights {
+        for (k, &v) in eight.iter().enumerate() {
+            least[k] = if v < least[k] { v } else { least[k] };
+            most[k] = if v > most[k] { v } else { most[k] };
+        }
+    }
+    let rest = rest
         .iter()
         .fold([f32::INFINITY, f32::NEG_INFINITY], |r, &v| {
             [r[0].min(v), r[1].max(v)]
-        })
+        });
+    [
+        least.into_iter().fold(rest[0], f32::min),
+        most.into_iter().fold(rest[1], f32::max),
+    ]
 }
 
 pub(super) fn too_many_values(step: f32, values: usize) -> BakeError {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::band::{Band, SPLAT, needed};
 use super::eight::{Found, dot, offsets};
 use super::frame::SIDE;
-use super::lanes::{EIGHT, F8, Simd, U8, lanes, whole};
+use super::lanes::{F8, Simd, U8, lanes, whole};
 use super::points::{BLOCK, NONE, Points, Row, of_row};
 use super::tree::Tree;
 use super::triangle::Triangle;
@@ -233,23 +233,20 @@ fn measure_any<S: Simd>(
         let ids = ids.same(none).choose_ids(zero, ids);
         let found = offsets(s, triangles, &ids.ids(), p);
         let mut square = found.square;
-        let mut left = exact.less(square).bits();
-        if left != 0 {
+        let left = exact.less(square);
+        if left.bits() != 0 {
             let near = beside_foot(s, p, &found);
             let x = near[0].max(low).min(high[0]).lanes();
             let y = near[1].max(low).min(high[1]).lanes();
             let z = near[2].max(low).min(high[2]).lanes();
-            let mut tried = [NONE; EIGHT];
-            while left != 0 {
-                let i = left.trailing_zeros() as usize;
-                left &= left - 1;
-                tried[i] = known(band, x[i], y[i], z[i]);
+            // All eight, whether they are left or not: that is had sooner than a choice among them.
+            let mut tried = ids.ids();
+            for (i, tried) in tried.iter_mut().enumerate() {
+                let there = known(band, x[i], y[i], z[i]);
+                *tried = if there == NONE { *tried } else { there };
             }
-            let tried = U8::load(s, &tried, 0);
-            let tried = tried.same(none).choose_ids(ids, tried);
-            if tried.same(ids).bits() != 0xff {
-                square = offsets(s, triangles, &tried.ids(), p).square.min(square);
-            }
+            let found = offsets(s, triangles, &tried, p).square;
+            square = left.choose(found.min(square), square);
         }
         square.sqrt().store(out, at);
     }

@@ -109,9 +109,13 @@ fn measure(
     let distances: Vec<[f32; BLOCK]> = slots()
         .map(|slot| {
             let mut own = wave::steadied(&band, slot, &distances);
-            for (i, d) in own.iter_mut().enumerate() {
-                let inside = signs.blocks[slot][i / LAYER] >> (i % LAYER) & 1 == 1;
-                *d *= if inside { -frame.step } else { frame.step };
+            let layers = own.as_chunks_mut::<LAYER>().0.iter_mut();
+            for (layer, inside) in layers.zip(&signs.blocks[slot]) {
+                for (i, d) in layer.iter_mut().enumerate() {
+                    // The bit becomes that of the sign.
+                    let sign = (inside >> i << 31) as u32 & 1 << 31;
+                    *d = f32::from_bits((*d * frame.step).to_bits() | sign);
+                }
             }
             own
         })
@@ -209,14 +213,18 @@ fn fill_far(
         let k = k as u32;
         let at = place + UVec3::new(k & 1, k >> 1 & 1, k >> 2);
         let slot = band.slot(at);
-        *v = if slot == NONE {
+        let triangle;
+        (*v, triangle) = if slot == NONE {
             let c = corners[(at.x + band.size.x * (at.y + band.size.y * at.z)) as usize];
-            guess = Some(c.triangle);
-            c.distance
+            (c.distance, c.triangle)
         } else {
-            guess = Some(band.blocks[slot as usize].triangle[0]);
-            distances[slot as usize][0]
+            let known = band.blocks[slot as usize].triangle[0];
+            (distances[slot as usize][0], known)
         };
+        // A node that heard of none asked the tree.
+        if triangle != NONE {
+            guess = Some(triangle);
+        }
     }
     let middle = (place * SIDE as u32).as_vec3() + 0.5 * SIDE as f32;
     let claimed = out.iter().sum::<f32>().abs() / FAR_LEN as f32;
