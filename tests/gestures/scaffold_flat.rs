@@ -142,3 +142,54 @@ fn what_is_drawn_keeps_its_depth_and_a_press_on_one_spot_is_no_stroke() {
         assert!(strokes[0].closed, "it ends where it began");
     }
 }
+
+#[test]
+fn a_loop_with_a_corner_where_it_begins_closes() {
+    let mut desk = drawing();
+    desk.asks(Settings::command("scaffold.draws", Draws::Stroke));
+    let corners = [
+        (300, 520),
+        (330, 580),
+        (420, 600),
+        (480, 550),
+        (420, 500),
+        (340, 490),
+        (300, 520),
+    ];
+    let corners = corners.map(|(x, y)| IVec2::new(x, y).as_vec2());
+    desk.glide(corners[0]);
+    desk.mouse(MouseButton::Left, true);
+    for pair in corners.windows(2) {
+        for i in 1..=5 {
+            desk.cursor(pair[0].lerp(pair[1], i as f32 / 5.0));
+            desk.frame();
+        }
+    }
+    desk.mouse(MouseButton::Left, false);
+    desk.wait(3);
+    let (id, object) = desk.document().objects().next().expect("a stroke");
+    let stroke = object.stroke().expect("a stroke").clone();
+    assert!(stroke.closed);
+    // Press and first step came in one frame: it begins where it was pressed.
+    let first = stroke.raw[0];
+    let seen = desk.pixel(first.as_vec3());
+    assert!(seen.distance(corners[0]) < 0.5, "{seen}");
+    // A press on one spot of it selects it.
+    let on = stroke.points()[9].as_vec3();
+    let at = desk.pixel(on);
+    desk.wait(700);
+    desk.settle();
+    assert_eq!(desk.selected(), []);
+    desk.glide(at);
+    assert_eq!(desk.touched(midair_studio::hands::Side::Right), Some(id));
+    desk.click();
+    assert_eq!(desk.selected(), [id], "{:?}", desk.warnings());
+    assert_eq!(desk.document().objects().count(), 1);
+    // In Assemble too, though it hangs in the air.
+    desk.asks(Command::Objects(midair_studio::objects::Ask::SelectNone));
+    desk.asks(Command::Mode(midair_studio::tools::ToolId::new("csg")));
+    desk.glide(at + Vec2::new(200.0, -150.0));
+    desk.glide(at + Vec2::new(0.0, 3.0));
+    desk.click();
+    assert_eq!(desk.selected(), [id]);
+}

@@ -19,6 +19,8 @@ pub(crate) fn aim(studio: Studio, draft: Res<Draft>, mut aim: ResMut<Aim>) {
     let mut next = Aim {
         draws: true,
         alt_acts: true,
+        // What is painted goes where surfaces are.
+        drawn: false,
         level: studio.settings.brush.skeleton == BrushSkeleton::Volume,
         ..default()
     };

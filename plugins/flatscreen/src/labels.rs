@@ -136,7 +136,12 @@ fn begins(
     let first = hints.buttons.first();
     let draws = first.filter(|h| h.action == HintKey::Action(Action::Act));
     if let (Some(hint), Some(tool)) = (draws, tools.active()) {
-        let text = format!("{}: {}", named(Action::Act), hint.does);
+        // Pressing is not all of it: what it draws is dragged.
+        let button = match named(Action::Act) {
+            click if click == "click" => "left button".to_owned(),
+            other => other,
+        };
+        let text = format!("{button}: {}", hint.does);
         let mut letters = text.chars();
         let first = letters.next().into_iter().flat_map(char::to_uppercase);
         return (first.chain(letters).collect(), tool.about);

@@ -1,10 +1,13 @@
 //! The pointer as a hand.
 
+use bevy::input::ButtonState;
 use bevy::input::mouse::AccumulatedMouseScroll;
 use bevy::prelude::*;
+use bevy::window::WindowEvent;
 use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
     command::Command,
+    drawing::Drawing,
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
     objects::How,
     pick::{self, Proxy, Touch},
@@ -25,6 +28,10 @@ use crate::place;
 
 /// A click may tremble this many pixels before it is a drag.
 pub(crate) const TREMBLE: f32 = 3.0;
+/// A line is pointed at from so many pixels beside it.
+const BESIDE: f32 = 6.0;
+/// A line may lie so much deeper than a surface and is seen on it, in metres.
+const BEHIND: f64 = 0.01;
 
 /// The leading hand, and the one that stays where it is.
 #[derive(Resource, Clone, Debug)]
@@ -48,6 +55,8 @@ pub struct Pointer {
     pub(crate) stretching: bool,
     /// Enter ended something and is not to finish as well until it is up again.
     pub(crate) enter_spent: bool,
+    /// Where the cursor was when the last frame ended, in pixels.
+    cursor: Option<Vec2>,
     /// How deep in the view what is being drawn was last, in metres.
     drawn: Option<f32>,
     /// Lines of the wheel that are to be clicks of the cross, and whether one is down.
@@ -86,6 +95,7 @@ impl Default for Pointer {
             band: None,
             stretching: false,
             enter_spent: false,
+            cursor: None,
             drawn: None,
             wheel: 0.0,
             clicked: false,
@@ -143,11 +153,35 @@ impl Pointer {
     }
 }
 
+/// Where the left button went down or up within this frame: in a frame that takes long the cursor goes on after that, and a
+/// stroke would not begin where it was begun.
+fn pressed_at<'a>(
+    events: impl Iterator<Item = &'a WindowEvent>,
+    before: Option<Vec2>,
+) -> Option<Vec2> {
+    let (mut at, mut down, mut up) = (before, None, None);
+    for event in events {
+        match event {
+            WindowEvent::CursorMoved(moved) => at = Some(moved.position),
+            WindowEvent::MouseButtonInput(input) if input.button == MouseButton::Left => {
+                let place = match input.state {
+                    ButtonState::Pressed => &mut down,
+                    ButtonState::Released => &mut up,
+                };
+                *place = place.or(at);
+            }
+            _ => {}
+        }
+    }
+    down.or(up)
+}
+
 /// What the devices say, and what is under the pointer for others.
 type Devices<'w, 's> = (
     Res<'w, Controls>,
     Res<'w, AccumulatedMouseScroll>,
     MessageReader<'w, 's, CursorMoved>,
+    MessageReader<'w, 's, WindowEvent>,
     Query<'w, 's, &'static Window>,
 );
 
@@ -160,13 +194,14 @@ type Scene<'w, 's> = (
     Res<'w, Shelf>,
     Res<'w, WorkPlane>,
     Res<'w, Aim>,
+    Res<'w, Drawing>,
 );
 
 pub(crate) fn point(
-    (controls, scroll, mut moved, windows): Devices,
+    (controls, scroll, mut moved, mut events, windows): Devices,
     (screen, gizmo, settings): (Res<Screen>, Res<Gizmo>, Res<Settings>),
     camera: Single<(&Camera, &Transform), With<Orbit>>,
-    (context, proxies, touch, project, shelf, plane, aim): Scene,
+    (context, proxies, touch, project, shelf, plane, aim, drawn): Scene,
     mut pointer: ResMut<Pointer>,
     mut ruler: ResMut<Ruler>,
     mut input: ResMut<HandsInput>,
@@ -180,6 +215,9 @@ pub(crate) fn point(
         .filter(|d| d.is_finite())
         .sum();
     let cursor = windows.iter().find_map(Window::cursor_position);
+    let before = std::mem::replace(&mut pointer.cursor, cursor);
+    let at_press = pressed_at(events.read(), before);
+    let cursor = cursor.map(|now| at_press.unwrap_or(now));
     let cursor = cursor.filter(|at| at.is_finite());
     let panel = screen.covers(cursor);
     let free = !panel && !pointer.stretching && !gizmo.has_pointer();
@@ -250,6 +288,18 @@ pub(crate) fn point(
                     let eye = GlobalTransform::from(*eye);
                     aim.caught(at, |p| camera.world_to_viewport(&eye, p).ok())
                 });
+                // A line in the air is seen and not met: it is pointed at from beside it, where no surface hides it.
+                let on =
+                    Some(&ray).filter(|_| aim.drawn && (!drawing || started) && caught.is_none());
+                let on = on.and_then(|ray| {
+                    let ray = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+                    let near = f64::from(BESIDE * pixel(camera));
+                    drawn.met(ray, eye.translation.as_dvec3(), near)
+                });
+                let hidden = |far: f64| hit.is_some_and(|h| far > f64::from(h.distance) + BEHIND);
+                let on = on.filter(|on| !hidden(on.distance));
+                let hit = hit.filter(|_| on.is_none());
+                let caught = caught.or(on.map(|on| on.point.as_vec3()));
                 let position = caught.or(hit.map(|h| h.point)).unwrap_or_else(|| {
                     let last = pointer.drawn.filter(|_| drawing && !plane.shown);
                     last.and_then(|far| at_depth(&ray, eye, far))
@@ -268,7 +318,7 @@ pub(crate) fn point(
                 pointer.drawn = drawing.then_some(far);
                 // A small thing is touched from a fingertip's breadth away as well.
                 let touched = touch.get(side).map(|t| t.object);
-                let object = hit.map(|h| h.object).or(touched);
+                let object = on.map(|on| on.id).or(hit.map(|h| h.object)).or(touched);
                 pointer.over = object.is_some();
                 pointer.face = hit.map(|h| (h.point, h.normal));
                 pointed = Some(position);

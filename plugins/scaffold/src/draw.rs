@@ -9,8 +9,9 @@ use midair_studio::command::Command;
 use midair_studio::drawing::{Drawing, on_piece};
 use midair_studio::hands::{Action, Cross, Hands, Haptic, Side};
 use midair_studio::notice::Notices;
+use midair_studio::pick::Touch;
 use midair_studio::plane::WorkPlane;
-use midair_studio::project::Project;
+use midair_studio::project::{Project, Selection};
 use midair_studio::settings::{Draws, Settings};
 
 use crate::ghost;
@@ -85,6 +86,8 @@ pub(crate) struct Room<'w> {
     plane: Res<'w, WorkPlane>,
     time: Res<'w, Time>,
     project: ResMut<'w, Project>,
+    touch: Res<'w, Touch>,
+    selection: ResMut<'w, Selection>,
     notices: ResMut<'w, Notices>,
 }
 
@@ -185,6 +188,7 @@ impl Room<'_> {
                 continue;
             }
             let at = hand.pose.position.as_dvec3();
+            draft.under = self.touch.get(side).map(|t| t.object);
             draft.phase = match self.settings.scaffold.draws {
                 Draws::Line => Phase::Line {
                     side,
@@ -281,8 +285,11 @@ impl Room<'_> {
             if let Some(done) = self.pick_ghost(points.first().copied(), side, draft) {
                 return done;
             }
+            if self.choose(draft.under) {
+                return true;
+            }
             self.notices
-                .info("That was a point. Hold the trigger and move the hand to draw a stroke.");
+                .info("That was a point. Hold, and move to draw a stroke.");
             return false;
         }
         let set = self.settings.scaffold.sound();
@@ -316,6 +323,14 @@ impl Room<'_> {
             &mut self.notices,
             draft,
         ))
+    }
+
+    /// A press on one spot of a thing selects that, so that it can be changed; says whether there is one.
+    fn choose(&mut self, object: Option<ObjectId>) -> bool {
+        if let Some(object) = object {
+            self.selection.set_if_neq(Selection(vec![object]));
+        }
+        object.is_some()
     }
 
     /// A press on one spot, or nearly: a tick mark across a line, or one of two points that a line is to join.
@@ -363,10 +378,11 @@ impl Room<'_> {
                 true
             }
             (None, Some((id, at, _))) => tick(id, at, &mut self.project, &mut self.notices),
+            (None, None) if self.choose(draft.under) => true,
             (None, None) => {
                 self.notices.info(
                     "Too short for a line. Across a line it is a tick mark, on a keypoint it picks that; \
-                     otherwise hold the trigger and pull.",
+                     otherwise hold and pull.",
                 );
                 false
             }

@@ -72,6 +72,8 @@ pub struct Draft {
     pub over: Option<usize>,
     /// An angle at which lines are to meet others, in degrees, as it was asked for last; 0 for none.
     pub own_angle: f64,
+    /// What the hand touched where it went down.
+    pub under: Option<ObjectId>,
     /// The first of two points that are picked.
     pub picked: Option<DVec3>,
     /// What the line being drawn would become.

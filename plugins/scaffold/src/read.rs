@@ -282,7 +282,10 @@ fn stroke_reading(
             let count = through.iter().filter(|k| k.of_scaffold).count();
             let count = count - usize::from(closed && count > 1);
             let s = if count == 1 { "" } else { "s" };
-            let words = format!("fair, through {count} point{s}");
+            let words = match count {
+                0 => "fair".to_owned(),
+                _ => format!("fair, through {count} point{s}"),
+            };
             (spline, through, closed, words)
         }
     };

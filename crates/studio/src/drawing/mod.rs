@@ -116,6 +116,47 @@ impl Drawing {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
+    /// What is seen within `radians` of a ray from `origin` along the unit `towards`, for an eye at `eye`: the nearest to the
+    /// ray, and how far along it that is.
+    pub fn met(
+        &self,
+        (origin, towards): (DVec3, DVec3),
+        eye: DVec3,
+        radians: f64,
+    ) -> Option<OnDrawing> {
+        let lines = self.lines.iter().map(|l| (l.id, [l.a, l.b], 0.0));
+        let near = |s: &&SceneStroke| {
+            let middle = s.low.midpoint(s.high);
+            let off = (middle - origin).reject_from_normalized(towards).length();
+            let around = 0.5 * s.low.distance(s.high) + s.radius;
+            off <= around + radians * (middle.distance(eye) + around)
+        };
+        let strokes = self.strokes.iter().filter(near);
+        let strokes = strokes.flat_map(|s| {
+            let pieces = s.points.windows(2);
+            pieces.map(|p| (s.id, [p[0], p[1]], s.radius))
+        });
+        lines
+            .chain(strokes)
+            .filter_map(|(id, [a, b], radius)| {
+                let point = nearest_to_ray((origin, towards), a, b);
+                let far = (point - origin).dot(towards);
+                let off = (point - origin).reject_from_normalized(towards).length() - radius;
+                let seen = off.max(0.0) / point.distance(eye).max(1e-9);
+                (far > 0.0 && seen <= radians).then_some((seen, id, point, far))
+            })
+            .min_by(|a, b| {
+                (a.0, a.3)
+                    .partial_cmp(&(b.0, b.3))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            })
+            .map(|(_, id, point, distance)| OnDrawing {
+                id,
+                point,
+                distance,
+            })
+    }
+
     /// Follows the document. Construction lines that are hidden are not there.
     pub fn follow(&mut self, document: &Document, lines: LinesShown) {
         self.lines.clear();
@@ -177,6 +218,16 @@ pub fn on_piece(to: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     let along = b - a;
     let t = (to - a).dot(along) / along.length_squared().max(1e-300);
     a + along * t.clamp(0.0, 1.0)
+}
+
+/// The point of a straight piece that is nearest to a ray.
+fn nearest_to_ray((origin, towards): (DVec3, DVec3), a: DVec3, b: DVec3) -> DVec3 {
+    // Seen along the ray, both are flat.
+    let flat = |p: DVec3| (p - origin).reject_from_normalized(towards);
+    let (from, to) = (flat(a), flat(b));
+    let along = to - from;
+    let t = -from.dot(along) / along.length_squared().max(1e-300);
+    a + (b - a) * t.clamp(0.0, 1.0)
 }
 
 pub(crate) fn plugin(app: &mut App) {

@@ -113,7 +113,8 @@ impl Ink {
     fn colour(self) -> Color {
         let [r, g, b] = match (self.dark, self.stroke) {
             (false, stroke) => INK[usize::from(stroke)],
-            (true, false) => [0x9a, 0x9d, 0xa6],
+            // Lighter than the lines of the floor.
+            (true, false) => [0xc9, 0xcb, 0xd2],
             (true, true) => [0xf1, 0xef, 0xea],
         };
         Color::srgb_u8(r, g, b)

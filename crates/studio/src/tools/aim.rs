@@ -15,6 +15,8 @@ pub struct Aim {
     pub draws: bool,
     /// Whether surfaces stop the hand.
     pub surfaces: bool,
+    /// Whether lines and strokes, as they are seen, stop a hand that draws nothing at the moment.
+    pub drawn: bool,
     /// The hand is held level, or as the surface under it lies, and not as the eye looks.
     pub level: bool,
     /// Both hands are led at once: a gamepad's other stick moves the hand that does not lead.
@@ -32,6 +34,7 @@ impl Default for Aim {
         Self {
             draws: false,
             surfaces: true,
+            drawn: true,
             level: false,
             both: false,
             alt_acts: false,
