@@ -136,17 +136,16 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// By whoever asks first, alone: were others to help, that thread would take up another place meanwhile, which asks too
+    /// and waits for what waits for it.
     fn moments(&self) -> &Moments {
         self.moments.get_or_init(|| {
-            let mut nodes: Vec<Node> = self
-                .order
-                .par_chunks(LEAF)
-                .map(|leaf| Node::leaf(leaf, self.triangles))
-                .collect();
+            let leaf = |leaf: &[u32]| Node::leaf(leaf, self.triangles);
+            let mut nodes: Vec<Node> = self.order.chunks(LEAF).map(leaf).collect();
             let mut levels = vec![0];
             let mut begin = 0;
             while nodes.len() - begin > 1 {
-                let above: Vec<Node> = nodes[begin..].par_chunks(FAN).map(Node::parent).collect();
+                let above: Vec<Node> = nodes[begin..].chunks(FAN).map(Node::parent).collect();
                 begin = nodes.len();
                 levels.push(begin);
                 nodes.extend(above);
@@ -454,7 +453,35 @@ fn spread(x: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+
+    /// Eight triangles about the origin.
+    fn ball() -> Vec<Triangle> {
+        let ball = midair_mesh::TriMesh {
+            positions: vec![
+                Vec3::X,
+                Vec3::Y,
+                Vec3::Z,
+                Vec3::NEG_X,
+                Vec3::NEG_Y,
+                Vec3::NEG_Z,
+            ],
+            normals: Vec::new(),
+            triangles: vec![
+                [0, 1, 2],
+                [1, 3, 2],
+                [3, 4, 2],
+                [4, 0, 2],
+                [1, 0, 5],
+                [3, 1, 5],
+                [4, 3, 5],
+                [0, 4, 5],
+            ],
+        };
+        (0..8).map(|t| Triangle::new(ball.corners(t))).collect()
+    }
 
     #[test]
     fn angles_add_up_to_more_than_a_turn_either_way() {
@@ -493,28 +520,7 @@ mod tests {
 
     #[test]
     fn both_sides_of_a_surface_are_told_at_once() {
-        let ball = midair_mesh::TriMesh {
-            positions: vec![
-                Vec3::X,
-                Vec3::Y,
-                Vec3::Z,
-                Vec3::NEG_X,
-                Vec3::NEG_Y,
-                Vec3::NEG_Z,
-            ],
-            normals: Vec::new(),
-            triangles: vec![
-                [0, 1, 2],
-                [1, 3, 2],
-                [3, 4, 2],
-                [4, 0, 2],
-                [1, 0, 5],
-                [3, 1, 5],
-                [4, 3, 5],
-                [0, 4, 5],
-            ],
-        };
-        let all: Vec<Triangle> = (0..8).map(|t| Triangle::new(ball.corners(t))).collect();
+        let all = ball();
         let twice: Vec<Triangle> = all.iter().chain(&all).copied().collect();
         for (triangles, within) in [(&all, 1.0), (&twice, 2.0)] {
             let tree = Tree::new(triangles);
@@ -530,5 +536,33 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn many_may_ask_for_moments_at_once() {
+        let (told, tell) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            let triangles = ball().repeat(20_000);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(8).build();
+            let pool = pool.unwrap();
+            for _ in 0..10 {
+                let tree = Tree::new(&triangles);
+                // They come one by one: were the first to have help, it would take up one of the next while it waits for it.
+                pool.in_place_scope(|scope| {
+                    for _ in 0..200 {
+                        scope.spawn(|_| {
+                            assert!(tree.winding(Vec3::new(0.0, 0.0, 90.0)).abs() < 1.0);
+                        });
+                        std::thread::sleep(Duration::from_micros(20));
+                    }
+                });
+            }
+            told.send(()).unwrap();
+        });
+        let patience = Duration::from_secs(120);
+        assert!(
+            tell.recv_timeout(patience).is_ok(),
+            "all wait for each other"
+        );
     }
 }
