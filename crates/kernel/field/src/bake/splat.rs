@@ -154,11 +154,10 @@ fn measure_any<S: Simd>(s: S, bar: &mut Bar, first: UVec3, ids: &[u32], triangle
                     // Strictly less: among equals the first triangle stays.
                     let known = F8::load(s, &bar.square, i);
                     let closer = d.less(known);
-                    if closer.bits() != 0 {
-                        d.min(known).store(&mut bar.square, i);
-                        let ids = U8::load(s, &bar.triangle, i);
-                        closer.choose_ids(name, ids).store(&mut bar.triangle, i);
-                    }
+                    let ids = U8::load(s, &bar.triangle, i);
+                    // Written back where nothing changed as well: whether anything does cannot be foreseen.
+                    d.min(known).store(&mut bar.square, i);
+                    closer.choose_ids(name, ids).store(&mut bar.triangle, i);
                     from += EIGHT as i32;
                 }
             }

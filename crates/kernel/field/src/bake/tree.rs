@@ -296,6 +296,10 @@ fn search_any<S: Simd>(s: S, tree: &Tree, p: Vec3, best: &mut (f32, u32)) {
             let leaf = tree.leaf(node as usize);
             let ids = std::array::from_fn(|i| leaf[i.min(leaf.len() - 1)]);
             let squares = offsets(s, tree.triangles, &ids, places).square;
+            // Few of the leaves that are near enough hold the closest.
+            if squares.less(most).bits() == 0 {
+                continue;
+            }
             for (&t, d) in ids.iter().zip(squares.lanes()) {
                 if (d, t) < *best {
                     *best = (d, t);
