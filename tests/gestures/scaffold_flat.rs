@@ -180,7 +180,8 @@ fn a_loop_with_a_corner_where_it_begins_closes() {
     desk.wait(700);
     desk.settle();
     assert_eq!(desk.selected(), []);
-    desk.glide(at);
+    // It is pointed at from beside it.
+    desk.glide(at + Vec2::new(0.0, 4.0));
     assert_eq!(desk.touched(midair_studio::hands::Side::Right), Some(id));
     desk.click();
     assert_eq!(desk.selected(), [id], "{:?}", desk.warnings());

@@ -24,6 +24,8 @@ use crate::read::{self, Reading, Scene};
 const SHORT: (f64, f64) = (0.03, 7.0);
 /// Shorter than this it is a press on one spot.
 const CLICK: (f64, f64) = (0.006, 3.5);
+/// A pointer is caught from so far beside what catches it.
+const CAUGHT: (f64, f64) = (0.0, 10.5);
 /// A pick takes a keypoint within this.
 const PICK: (f64, f64) = (0.02, 8.0);
 /// The tip leaves a sample whenever it went so far.
@@ -281,6 +283,14 @@ impl Room<'_> {
             points.iter().map(|p| p.at).collect()
         };
         let long: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
+        // What caught the pointer where it was pressed is no way that it went.
+        let caught = match points[..] {
+            [first, second, ..] if self.hands.pixel > 0.0 => {
+                Some(first.distance(second)).filter(|far| *far < self.reach(side, CAUGHT))
+            }
+            _ => None,
+        };
+        let long = long - caught.unwrap_or(0.0);
         if points.len() < 2 || long < self.reach(side, SHORT) * 0.3 {
             if let Some(done) = self.pick_ghost(points.first().copied(), side, draft) {
                 return done;

@@ -23,8 +23,8 @@ use crate::{EPSILON, Wires, ask, edit, write};
 const CLICK: f32 = 0.25;
 /// How far a swipe over half the pad moves w.
 const SWIPE: f32 = 1.5;
-/// A press within this, in physical metres and in pixels, is one on one spot.
-const SPOT: (f64, f64) = (0.006, 3.5);
+/// A press within this, in physical metres and in pixels, is one on one spot: a pointer may have been caught from beside it.
+const SPOT: (f64, f64) = (0.006, 7.0);
 /// α of Eq. 12.
 pub(crate) const ALPHA: f32 = 0.1;
 
