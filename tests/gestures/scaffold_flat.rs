@@ -180,12 +180,14 @@ fn a_loop_with_a_corner_where_it_begins_closes() {
     desk.wait(700);
     desk.settle();
     assert_eq!(desk.selected(), []);
-    // It is pointed at from beside it.
-    desk.glide(at + Vec2::new(0.0, 4.0));
-    assert_eq!(desk.touched(midair_studio::hands::Side::Right), Some(id));
-    desk.click();
-    assert_eq!(desk.selected(), [id], "{:?}", desk.warnings());
-    assert_eq!(desk.document().objects().count(), 1);
+    // It is pointed at from beside it, on whichever side.
+    for beside in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
+        desk.asks(Command::Objects(midair_studio::objects::Ask::SelectNone));
+        desk.glide(at + 5.0 * beside);
+        desk.click();
+        assert_eq!(desk.selected(), [id], "{beside}: {:?}", desk.warnings());
+        assert_eq!(desk.document().objects().count(), 1, "{beside}");
+    }
     // In Assemble too, though it hangs in the air.
     desk.asks(Command::Objects(midair_studio::objects::Ask::SelectNone));
     desk.asks(Command::Mode(midair_studio::tools::ToolId::new("csg")));
