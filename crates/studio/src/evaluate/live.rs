@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 use bevy::tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use midair_field::bake::Progress;
-use midair_field::{Placement, Recipe};
+use midair_field::{Placement, Program, Recipe};
 use midair_gpu::{Emitted, GpuSolid};
 use midair_mesh::Aabb;
 use midair_solid::Solid;
@@ -322,9 +322,15 @@ fn start(
             })
         };
         // A sketch that fails is left out; what update makes says why.
-        let guarded = AssertUnwindSafe(|| match workers() {
-            Some(pool) => pool.install(work),
-            None => work(),
+        let guarded = AssertUnwindSafe(|| {
+            // Meshes are baked out here: a worker that waits for help would take up another sketch meanwhile, which may wait
+            // for the very mesh that it bakes.
+            let meshes = volumes.watched(&watched);
+            Program::compile(&recipe, &Placement::IDENTITY, key.step(), &meshes).ok()?;
+            match workers() {
+                Some(pool) => pool.install(work),
+                None => work(),
+            }
         });
         catch_unwind(guarded).ok().flatten()
     });
