@@ -113,7 +113,9 @@ fn what_is_made_does_not_depend_on_the_preview() {
         s.carry_right(AT_SPHERE + Vec3::X * 0.05);
         s.let_go(Side::Right, Action::Grab);
         s.finish();
-        let updates = s.world().resource::<Evaluations>().updates().len();
+        let counted = |s: &Studio| s.world().resource::<Evaluations>().updates().len();
+        s.until("the update is made", |s| counted(s) > 0);
+        let updates = counted(&s);
         assert!(!preview(&s).is_shown(), "it is made: nothing is pending");
         (s.document().content_hash(), updates)
     };
