@@ -235,8 +235,13 @@ fn material(
 }
 
 /// Handed over to be drawn.
-fn drawn(net: Net) -> (Mesh, usize) {
+fn drawn(mut net: Net) -> (Mesh, usize) {
     let bytes = net.bytes();
+    if net.points.is_empty() {
+        // The engine has no room for nothing.
+        net.points.push(Vec3::ZERO);
+        net.lines.extend([0, 0]);
+    }
     let mesh = Mesh::new(
         PrimitiveTopology::LineList,
         RenderAssetUsages::RENDER_WORLD | RenderAssetUsages::MAIN_WORLD,

@@ -387,6 +387,12 @@ mod tests {
     }
 
     #[test]
+    fn what_is_nothing_is_drawn_without_a_word() {
+        let nothing = Made::from_crisp(TriMesh::default(), 0).drawing();
+        assert!(nothing.count_vertices() > 0);
+    }
+
+    #[test]
     fn what_was_let_go_is_drawn_again_as_it_was() {
         let sheet = Made::from_sheet(&strip(0.0)).unwrap();
         let solid = strip(0.02).solid().unwrap();

@@ -431,6 +431,14 @@ fn stand_in(
 
 /// As Bevy draws it.
 pub fn to_bevy_mesh(mesh: &TriMesh) -> Mesh {
+    if mesh.positions.is_empty() {
+        // The engine has no room for nothing, and says so where a person reads it: a triangle without area.
+        return to_bevy_mesh(&TriMesh {
+            positions: vec![Vec3::ZERO; 3],
+            triangles: vec![[0, 1, 2]],
+            ..TriMesh::default()
+        });
+    }
     let normals: Vec<Vec3> = if mesh.normals.len() == mesh.positions.len() {
         mesh.normals.clone()
     } else {
