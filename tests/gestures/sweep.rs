@@ -9,7 +9,10 @@ use midair_mesh::check;
 use midair_studio::command::Command;
 use midair_studio::hands::{Action, Pose, Side};
 use midair_studio::notice::Notices;
+use midair_studio::objects::{Ask, How};
+use midair_studio::project::{Project, Selection};
 use midair_studio::settings::{Settings, SweepHands, SweepItem, SweepShape};
+use midair_studio::show::{Drafts, Readouts};
 use midair_sweep::{Draft, Phase, SWEEP, Solo, SweepAsk};
 
 use crate::studio::{Studio, near};
@@ -164,6 +167,31 @@ fn two_full_turns_are_counted() {
         panic!("a row of clones");
     };
     assert!(row.ribs[0].twist > 3.5 * PI);
+}
+
+#[test]
+fn a_row_of_clones_is_as_large_as_all_of_them() {
+    let mut s = Studio::new();
+    let (id, _) = crate::sources::clones(&mut s);
+    s.settle();
+    let selection = Selection(vec![id]);
+    let project = s.world().resource::<Project>();
+    let (low, high) =
+        midair_studio::ruler::selected_box(project, &selection, &Drafts::default()).unwrap();
+    s.ask(Command::Objects(Ask::Select {
+        ids: selection.0,
+        how: How::Set,
+    }));
+    let readouts = &s.world().resource::<Readouts>().0;
+    let size = readouts.iter().find(|r| r.text.contains('×'));
+    let longest = size
+        .expect("its size")
+        .text
+        .split([' ', '×'])
+        .filter_map(|word| word.parse::<f32>().ok())
+        .fold(0.0, f32::max);
+    let row = 1e3 * (high - low).max_element();
+    assert!((longest / row - 1.0).abs() < 0.1, "{longest} of {row} mm");
 }
 
 #[test]

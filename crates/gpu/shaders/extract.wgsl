@@ -86,7 +86,7 @@ fn fill_signs(lid: u32) {
 
 // Crossed edges by axis, how many lie before each word, and room in the mesh for the brick's share:
 // the vertices on edges that start at its nodes, the triangles of cells that do.
-@compute @workgroup_size(256u)
+@compute @workgroup_size(256)
 fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
     let p = piece(flat_group(group), lid);
     if p == NONE || (p & 0x40000000u) == 0u {
@@ -285,7 +285,7 @@ fn padded_case(node: u32) -> u32 {
     return found;
 }
 
-@compute @workgroup_size(256u)
+@compute @workgroup_size(256)
 fn emit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lid: u32) {
     let p = piece(flat_group(group), lid);
     if p == NONE {

@@ -41,7 +41,7 @@ impl Room {
         self.hash() + 5 * self.chunks
     }
 
-    /// Whether there is as much room of each kind.
+    /// Whether there is as much room of each kind that a brush takes.
     pub fn covers(&self, wanted: &Room) -> bool {
         self.quantised == wanted.quantised
             && self.slots >= wanted.slots

@@ -127,6 +127,7 @@ impl GpuSolid {
 
     fn brushed(&mut self, mesh: &TriMesh, brush: &Brush) -> Result<(), GpuError> {
         self.forget();
+        self.made_for = For::Plain;
         let most = brush.most_slots();
         let mut slots = brush.slots();
         let started = Instant::now();

@@ -108,5 +108,7 @@ fn changed(
     easel.selected = None;
     pad.clear(&mut commands);
     ghost.clear(&mut commands);
-    panels.set_open("brush", change.active == BRUSH);
+    if change.active == BRUSH {
+        panels.set_open("brush", true);
+    }
 }

@@ -388,7 +388,7 @@ impl Room<'_> {
                 true
             }
             (None, Some((id, at, _))) => tick(id, at, &mut self.project, &mut self.notices),
-            (None, None) if self.choose(draft.under) => true,
+            (None, None) if clicked && self.choose(draft.under) => true,
             (None, None) => {
                 self.notices.info(
                     "Too short for a line. Across a line it is a tick mark, on a keypoint it picks that; \

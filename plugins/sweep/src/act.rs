@@ -170,8 +170,8 @@ pub(crate) fn ends(
             let spot = hands.reach(main, SPOT.0, SPOT.1) as f32;
             let reach = Reach { unit, spot, dt };
             if solo(draft, hands.get(main), &reach, carries, &settings) == Then::Choose {
-                choose(draft.under, &mut selection, &mut notices);
-                hands.pulse(main, Haptic::Tick);
+                let there = choose(draft.under, &mut selection, &mut notices);
+                hands.pulse(main, if there { Haptic::Tick } else { Haptic::Refused });
             }
         }
     } else {
@@ -210,14 +210,19 @@ struct Reach {
     dt: f32,
 }
 
-/// What was clicked is selected, so that it can be changed.
-fn choose(under: Option<ObjectId>, selection: &mut Selection, notices: &mut Notices) {
+/// What was clicked is selected, so that it can be changed; whether something was.
+fn choose(
+    under: Option<ObjectId>,
+    selection: &mut ResMut<Selection>,
+    notices: &mut Notices,
+) -> bool {
     match under {
-        Some(object) => *selection = Selection(vec![object]),
+        Some(object) => drop(selection.set_if_neq(Selection(vec![object]))),
         None => notices.info(
             "That was a press on one spot: hold and draw the way of the left end. On a thing it selects that.",
         ),
     }
+    under.is_some()
 }
 
 /// The one hand places the ends or moves them.

@@ -11,6 +11,7 @@ use bevy::prelude::*;
 use midair_document::ObjectId;
 use midair_studio::settings::{Settings, SweepShape};
 use midair_studio::{
+    evaluate::Evaluations,
     project::Project,
     show::{ObjectMap, transform},
 };
@@ -107,7 +108,7 @@ impl Wires {
 pub(crate) fn draw(
     draft: Res<Draft>,
     settings: Res<Settings>,
-    (project, time): (Res<Project>, Res<Time>),
+    (project, evaluations, time): (Res<Project>, Res<Evaluations>, Res<Time>),
     (map, drawn_as): (
         Res<ObjectMap>,
         Query<(), Or<(With<Mesh3d>, With<Children>)>>,
@@ -139,7 +140,8 @@ pub(crate) fn draw(
     if !draft.is_sweeping() || draft.ribs.is_empty() {
         if let Some((object, left)) = &mut wires.waits {
             let seen = map.get(*object).is_some_and(|e| drawn_as.contains(e));
-            if seen {
+            // Where it cannot be made, or what was swept is hidden, nothing will be seen either.
+            if seen || evaluations.outstanding() == 0 {
                 *left -= time.delta_secs();
             }
             // Taken back, or in the way of nothing any more.
@@ -147,6 +149,7 @@ pub(crate) fn draw(
                 return;
             }
         }
+        wires.waits = None;
         if !wires.pieces.is_empty() || wires.tail.is_some() {
             wires.clear(&mut commands);
         }

@@ -5,7 +5,7 @@ use midair_field::Brick;
 use midair_mesh::TriMesh;
 
 use super::support::*;
-use crate::GpuSolid;
+use crate::{GpuSolid, SolidOptions};
 
 /// A box of twelve triangles, or several.
 fn boxes(all: &[(Vec3, Vec3)]) -> TriMesh {
@@ -78,6 +78,40 @@ fn a_brush_is_its_voxels_smoothed() {
         "{} {volume}",
         mesh.volume()
     );
+}
+
+#[test]
+fn buffers_that_held_something_else_hold_a_brush_as_new_ones_do() {
+    let Some(gpu) = gpu() else { return };
+    let step = 0.01;
+    let small = boxes(&[(Vec3::splat(-0.06), Vec3::splat(0.07))]);
+    let large = boxes(&[(Vec3::new(-0.3, -0.1, -0.2), Vec3::new(0.2, 0.1, 0.25))]);
+    let fresh = |mesh: &TriMesh| GpuSolid::from_mesh(&gpu, mesh, step).unwrap();
+    let same = |a: &GpuSolid, b: &GpuSolid, name: &str| {
+        assert_eq!(a.size(), b.size(), "{name}");
+        assert_sound(&a.mesh().unwrap(), name);
+        let (far, signs, compared) = difference(&a.grid().unwrap(), &b.grid().unwrap(), 1.5, 0.01);
+        assert!(
+            far == 0.0 && signs == 0 && compared > 500,
+            "{name}: {far}, {signs} of {compared}"
+        );
+    };
+    let program = compile(&nested(), 0.02);
+    let quantised = SolidOptions {
+        quantised: true,
+        ..SolidOptions::default()
+    };
+    for options in [SolidOptions::default(), quantised] {
+        let mut solid = GpuSolid::make_with(&gpu, &program, options).unwrap();
+        for mesh in [&small, &large, &small] {
+            solid.make_again_from(mesh, step).unwrap();
+            same(&solid, &fresh(mesh), "a brush");
+        }
+        // And a solid again, as if nothing had been there.
+        solid.update(&program).unwrap();
+        let anew = GpuSolid::make_with(&gpu, &program, options).unwrap();
+        same(&solid, &anew, "a solid");
+    }
 }
 
 #[test]

@@ -145,11 +145,7 @@ impl Drawing {
                 let seen = off.max(0.0) / point.distance(eye).max(1e-9);
                 (far > 0.0 && seen <= radians).then_some((seen, id, point, far))
             })
-            .min_by(|a, b| {
-                (a.0, a.3)
-                    .partial_cmp(&(b.0, b.3))
-                    .unwrap_or(std::cmp::Ordering::Equal)
-            })
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.3.total_cmp(&b.3)))
             .map(|(_, id, point, distance)| OnDrawing {
                 id,
                 point,

@@ -108,7 +108,11 @@ fn made_box(project: &Project, evaluations: &Evaluations, object: &Object) -> Op
     let made = object.recipe().and_then(|recipe| {
         let steps = display_steps(document, object, recipe).into_iter();
         let mut keys = steps.map(|step| Key::new(recipe, step));
-        keys.find_map(|key| Some((key.step(), evaluations.made(&key)?.bounds)))
+        keys.find_map(|key| {
+            // Of a row one clone is made, which says nothing of how far it goes.
+            let made = evaluations.made(&key).filter(|m| m.places.is_none())?;
+            Some((key.step(), made.bounds))
+        })
     });
     let Some((step, made)) = made.filter(|(_, made)| !made.is_empty()) else {
         return Some((low, high));

@@ -4,7 +4,7 @@
 use bevy::light::NotShadowCaster;
 use bevy::math::DVec3;
 use bevy::prelude::*;
-use midair_document::{ConstructionLine, Kind};
+use midair_document::{ConstructionLine, Kind, affine};
 use midair_mesh::TriMesh;
 use midair_solid::tube;
 
@@ -79,7 +79,9 @@ pub(super) fn draw(
         let drawn = matches!(object.kind, Kind::Line(_) | Kind::Stroke(_));
         let shown = inked.and_then(|i| i.0.as_ref());
         let size = match &object.kind {
-            Kind::Line(line) => sight.size(line.a.midpoint(line.b)),
+            Kind::Line(line) => {
+                sight.size(affine(&object.placement).transform_point3(line.a.midpoint(line.b)))
+            }
             // A stroke is as wide as it is.
             _ => 0,
         };
