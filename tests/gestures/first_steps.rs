@@ -8,6 +8,7 @@ use midair_document::{Edit, ObjectId};
 use midair_field::Op;
 use midair_flatscreen::Gizmo;
 use midair_studio::command::Command;
+use midair_studio::evaluate::Delivery;
 use midair_studio::hands::Action;
 use midair_studio::notice::Notices;
 use midair_studio::objects::Ask;
@@ -142,8 +143,13 @@ const PLAIN: Key = Key::Unidentified(NativeKey::Unidentified);
 #[test]
 fn what_was_swept_is_a_net_until_it_is_seen() {
     let mut desk = Desk::new();
+    // Nothing is taken in yet, so that there is something to wait for.
+    desk.app.insert_resource(Delivery::Exactly(Vec::new()));
     let sheet = desk.sheet();
     let waits = |desk: &Desk| desk.world().resource::<Wires>().waits();
+    desk.wait(30);
+    assert!(waits(&desk) && !desk.is_drawn(sheet));
+    desk.app.insert_resource(Delivery::AsTheyCome);
     let mut left = 2000;
     while !desk.is_drawn(sheet) {
         assert!(waits(&desk), "nothing of it would be seen");
@@ -200,6 +206,7 @@ fn a_cut_that_takes_nothing_away_is_told() {
     let pending = vec![(cube, Op::Union), (ball, Op::Subtract)];
     desk.says(Command::Edit(Edit::SetPending { pending }));
     desk.strike_one(KeyCode::Enter);
+    assert_eq!(desk.document().len(), 1, "{:?}", desk.warnings());
     assert!(!desk.was_told("takes nothing away"));
 }
 
@@ -233,9 +240,42 @@ fn where_a_press_draws_handles_come_when_they_are_asked_for() {
     assert!(!taken(&mut desk), "a press paints");
     desk.strike(&[(KeyCode::KeyG, PLAIN)]);
     assert!(taken(&mut desk));
+    // From one mode that draws into another, too.
+    for id in ["sweep", "scaffold", "brush"] {
+        desk.says(Command::Mode(ToolId::new(id)));
+        assert!(!taken(&mut desk), "asked for elsewhere than in {id}");
+        desk.strike(&[(KeyCode::KeyG, PLAIN)]);
+        assert!(taken(&mut desk), "{id}");
+    }
     desk.says(Command::Mode(ToolId::new("csg")));
     desk.says(Command::Mode(BRUSH));
     assert!(!taken(&mut desk));
+}
+
+#[test]
+fn a_handle_is_taken_and_let_go_of_where_that_was_within_a_slow_frame() {
+    let mut desk = Desk::new();
+    let cube = desk.thing("solid/cube");
+    desk.hover(cube);
+    desk.click();
+    let before = desk.stands(cube);
+    let at = desk.handle(before, Vec3::Y);
+    desk.glide(at);
+    let by = Vec2::new(0.0, -80.0);
+    // The press, and a way off the handle, in one frame.
+    desk.mouse(MouseButton::Left, true);
+    desk.cursor(at + by);
+    desk.frame();
+    assert!(desk.world().resource::<Gizmo>().is_dragged());
+    desk.wait(2);
+    desk.mouse(MouseButton::Left, false);
+    desk.cursor(at + 3.0 * by);
+    desk.wait(3);
+    let after = desk.stands(cube);
+    let lifted = desk.handle(after, Vec3::Y);
+    assert!(after.y > before.y + 0.05, "{before}, {after}");
+    assert!(lifted.distance(at + by) < 8.0, "{lifted}, {}", at + by);
+    assert_eq!(desk.selected(), [cube]);
 }
 
 #[test]

@@ -401,3 +401,36 @@ fn the_sticks_turn_the_view_about_the_hand_and_the_hand_in_depth() {
     desk.wait(2);
     assert_eq!(desk.document().len(), 0);
 }
+
+#[test]
+fn a_click_is_where_the_mouse_is_however_slowly_it_went_there() {
+    // With the click alone in its frame, and with a move after it in the same one.
+    for goes_on in [false, true] {
+        let mut desk = Desk::new();
+        let cube = desk.thing("solid/cube");
+        desk.wait(3);
+        let at = desk.hover(cube);
+        let from = at + Vec2::new(0.0, -250.0);
+        desk.glide(from);
+        desk.click();
+        assert_eq!(desk.selected(), []);
+        desk.plug();
+        desk.tap(Button::DPadUp);
+        assert!(desk.pad_hands().leads());
+        // A mouse that moves so slowly trembles on the table.
+        for i in 1..=125 {
+            desk.cursor(from.lerp(at, i as f32 / 125.0));
+            desk.frame();
+        }
+        assert!(desk.pad_hands().leads());
+        desk.mouse(MouseButton::Left, true);
+        if goes_on {
+            desk.cursor(at + Vec2::X);
+        }
+        desk.wait(4);
+        assert!(!desk.pad_hands().leads());
+        desk.mouse(MouseButton::Left, false);
+        desk.wait(3);
+        assert_eq!(desk.selected(), [cube], "{goes_on}");
+    }
+}

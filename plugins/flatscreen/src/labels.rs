@@ -247,6 +247,7 @@ pub(crate) fn readouts(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use midair_studio::tools::{AddTool, Tool, ToolId};
 
     #[test]
     fn what_is_read_lies_in_the_view() {
@@ -271,6 +272,23 @@ mod tests {
         let (first, _) = begins(&hints, &tools, false, named);
         assert_eq!(first, "Press L for the library");
         let (first, _) = begins(&hints, &tools, true, named);
+        assert_eq!(first, "Pick a shape to begin");
+        // Where the first button draws: what it is called here, and what the mode is about.
+        let mut app = App::new();
+        app.add_tool(Tool {
+            id: ToolId::new("chalk"),
+            name: "Chalk",
+            about: "draws on what is there",
+            order: 0,
+        });
+        let tools = app.world().resource::<Tools>();
+        hints.begin("Chalk").say(Action::Act, "draw a line");
+        let (first, second) = begins(&hints, tools, false, named);
+        assert_eq!(first, "Left button: draw a line");
+        assert_eq!(second, "draws on what is there");
+        let (first, _) = begins(&hints, tools, false, |_| "RT".to_owned());
+        assert_eq!(first, "RT: draw a line");
+        let (first, _) = begins(&hints, tools, true, named);
         assert_eq!(first, "Pick a shape to begin");
     }
 }

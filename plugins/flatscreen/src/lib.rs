@@ -12,6 +12,7 @@ mod exact;
 pub mod focus;
 mod gamepad;
 mod gizmo;
+mod grip;
 mod hints;
 mod keys;
 mod labels;
@@ -22,6 +23,7 @@ mod panels;
 mod place;
 mod pointer;
 mod projection;
+mod reach;
 mod ring;
 mod stretch;
 mod view;
@@ -47,6 +49,7 @@ impl Plugin for FlatscreenPlugin {
             .resource_mut::<EguiGlobalSettings>()
             .auto_create_primary_context = false;
         app.init_resource::<Pointer>()
+            .init_resource::<reach::Cursor>()
             .init_resource::<Gizmo>()
             .init_resource::<Pad>()
             .init_resource::<focus::Typing>()
@@ -61,10 +64,12 @@ impl Plugin for FlatscreenPlugin {
                     .before(EguiPreUpdateSet::BeginPass),
             )
             .add_plugins((bindings::plugin, controls_panel::plugin, monitors::plugin))
+            .add_observer(gizmo::put_away)
             .add_systems(Startup, orbit::spawn)
             .add_systems(
                 Update,
                 (
+                    reach::follow,
                     view::carry,
                     gamepad::lead,
                     gamepad::camera,

@@ -1,9 +1,7 @@
 //! The pointer as a hand.
 
-use bevy::input::ButtonState;
 use bevy::input::mouse::AccumulatedMouseScroll;
 use bevy::prelude::*;
-use bevy::window::WindowEvent;
 use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
     command::Command,
@@ -22,9 +20,11 @@ use midair_studio::{
 use crate::band::{self, Band};
 use crate::bindings::{Control, Controls, Device};
 use crate::gizmo::Gizmo;
+use crate::grip::Grip;
 use crate::orbit::{Orbit, lines, pixel};
 use crate::panels::Screen;
 use crate::place;
+use crate::reach::{self, Cursor, at_depth, on_plane, plane_up, rest};
 
 /// A click may tremble this many pixels before it is a drag.
 pub(crate) const TREMBLE: f32 = 3.0;
@@ -55,8 +55,6 @@ pub struct Pointer {
     pub(crate) stretching: bool,
     /// Enter ended something and is not to finish as well until it is up again.
     pub(crate) enter_spent: bool,
-    /// Where the cursor was when the last frame ended, in pixels.
-    cursor: Option<Vec2>,
     /// How deep in the view what is being drawn was last, in metres.
     drawn: Option<f32>,
     /// Lines of the wheel that are to be clicks of the cross, and whether one is down.
@@ -64,21 +62,6 @@ pub struct Pointer {
     clicked: bool,
     /// Components that were picked and not placed yet, and where in the window they were let go.
     picked: Vec<(String, Option<Vec2>)>,
-}
-
-/// What the leading hand drags.
-#[derive(Clone, Copy, Debug)]
-struct Grip {
-    /// Metres from the camera, along its view.
-    depth: f32,
-    /// The plane it is dragged along, if one is in use.
-    plane: Option<(Vec3, Dir3)>,
-    /// Where the button went down, in pixels.
-    from: Vec2,
-    /// Whether it was dragged yet; a click that trembles moves nothing.
-    moved: bool,
-    /// Pixels that went into turning: the thing stays where it is meanwhile.
-    spent: Vec2,
 }
 
 impl Default for Pointer {
@@ -95,7 +78,6 @@ impl Default for Pointer {
             band: None,
             stretching: false,
             enter_spent: false,
-            cursor: None,
             drawn: None,
             wheel: 0.0,
             clicked: false,
@@ -153,36 +135,12 @@ impl Pointer {
     }
 }
 
-/// Where the left button went down or up within this frame: in a frame that takes long the cursor goes on after that, and a
-/// stroke would not begin where it was begun.
-fn pressed_at<'a>(
-    events: impl Iterator<Item = &'a WindowEvent>,
-    before: Option<Vec2>,
-) -> Option<Vec2> {
-    let (mut at, mut down, mut up) = (before, None, None);
-    for event in events {
-        match event {
-            WindowEvent::CursorMoved(moved) => at = Some(moved.position),
-            WindowEvent::MouseButtonInput(input) if input.button == MouseButton::Left => {
-                let place = match input.state {
-                    ButtonState::Pressed => &mut down,
-                    ButtonState::Released => &mut up,
-                };
-                *place = place.or(at);
-            }
-            _ => {}
-        }
-    }
-    down.or(up)
-}
-
 /// What the devices say, and what is under the pointer for others.
 type Devices<'w, 's> = (
     Res<'w, Controls>,
     Res<'w, AccumulatedMouseScroll>,
     MessageReader<'w, 's, CursorMoved>,
-    MessageReader<'w, 's, WindowEvent>,
-    Query<'w, 's, &'static Window>,
+    Res<'w, Cursor>,
 );
 
 /// What of the scene the pointer meets.
@@ -198,7 +156,7 @@ type Scene<'w, 's> = (
 );
 
 pub(crate) fn point(
-    (controls, scroll, mut moved, mut events, windows): Devices,
+    (controls, scroll, mut moved, cursor): Devices,
     (screen, gizmo, settings): (Res<Screen>, Res<Gizmo>, Res<Settings>),
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     (context, proxies, touch, project, shelf, plane, aim, drawn): Scene,
@@ -214,11 +172,7 @@ pub(crate) fn point(
         .filter_map(|m| m.delta)
         .filter(|d| d.is_finite())
         .sum();
-    let cursor = windows.iter().find_map(Window::cursor_position);
-    let before = std::mem::replace(&mut pointer.cursor, cursor);
-    let at_press = pressed_at(events.read(), before);
-    let cursor = cursor.map(|now| at_press.unwrap_or(now));
-    let cursor = cursor.filter(|at| at.is_finite());
+    let cursor = cursor.at();
     let panel = screen.covers(cursor);
     let free = !panel && !pointer.stretching && !gizmo.has_pointer();
     let began = |control| controls.just_pressed(control) && pressed(control) && free;
@@ -239,7 +193,7 @@ pub(crate) fn point(
     pointer.acting |= started;
     // A latched hand that leads again lets go where it is.
     let unlatched = std::mem::take(&mut pointer.latched[side as usize]);
-    let ray = cursor.and_then(|c| ray(camera, eye, c));
+    let ray = cursor.and_then(|c| reach::ray(camera, eye, c));
     let mut pointed = None;
     if let Some(mut grip) = pointer.grip {
         // In the frame of the release too: it comes to rest where it was dragged to.
@@ -255,7 +209,7 @@ pub(crate) fn point(
         if let Some(at) = cursor.map(|c| c - grip.spent) {
             grip.moved |= at.distance(grip.from) > TREMBLE;
             if grip.moved
-                && let Some(ray) = self::ray(camera, eye, at)
+                && let Some(ray) = reach::ray(camera, eye, at)
             {
                 let rotation = (eye.rotation * pointer.turn).normalize();
                 let pose = &mut pointer.poses[side as usize];
@@ -372,7 +326,7 @@ pub(crate) fn point(
     if pointer.grip.is_none() && !pointer.picked.is_empty() {
         let (component, at) = pointer.picked.remove(0);
         if let Some(found) = shelf.library.get(&component) {
-            let towards = ray_through(camera, eye, at.or(screen.centre()));
+            let towards = reach::ray_through(camera, eye, at.or(screen.centre()));
             let bounds = found.recipe.bounds();
             let corners = (bounds.min, bounds.max);
             if !bounds.is_empty() {
@@ -459,123 +413,8 @@ pub(crate) fn point(
     input.pixel = pixel(camera);
 }
 
-impl Grip {
-    /// The wheel: nearer or farther, or off the plane that it is dragged along.
-    fn nearer(&mut self, lines: f32, eye: &Transform) {
-        match &mut self.plane {
-            Some((through, normal)) => {
-                let away = through.distance(eye.translation);
-                *through += **normal * (0.02 * away * lines);
-            }
-            None => self.depth = (self.depth * 1.05_f32.powf(lines)).clamp(0.05, 40.0),
-        }
-        self.moved = true;
-    }
-
-    /// Where it is dragged to; `None` where the plane is seen from its edge.
-    fn at(&self, ray: &Ray3d, eye: &Transform) -> Option<Vec3> {
-        let Some((through, normal)) = self.plane else {
-            let along = ray.direction.dot(*eye.forward()).max(0.1);
-            // The ray starts at the near plane, and without perspective even behind the eye.
-            let ahead = (ray.origin - eye.translation).dot(*eye.forward());
-            return Some(ray.get_point((self.depth - ahead) / along));
-        };
-        if ray.direction.dot(*normal).abs() < 0.03 {
-            return None;
-        }
-        let far = ray.intersect_plane(through, InfinitePlane3d::new(*normal))?;
-        (far > 0.0 && far < 40.0).then(|| ray.get_point(far))
-    }
-}
-
-/// An empty hand hangs behind the eyes, where it touches and hides nothing.
-fn rest(eye: &Transform, side: Side) -> Pose {
-    let right = match side {
-        Side::Left => -0.2,
-        Side::Right => 0.2,
-    };
-    Pose {
-        position: eye.transform_point(Vec3::new(right, -0.25, 0.2)),
-        rotation: eye.rotation,
-    }
-}
-
-fn ray(camera: &Camera, eye: &Transform, cursor: Vec2) -> Option<Ray3d> {
-    camera
-        .viewport_to_world(&GlobalTransform::from(*eye), cursor)
-        .ok()
-}
-
-/// The ray through a point of the window; straight ahead where there is none yet.
-fn ray_through(camera: &Camera, eye: &Transform, at: Option<Vec2>) -> Ray3d {
-    at.and_then(|at| ray(camera, eye, at)).unwrap_or(Ray3d {
-        origin: eye.translation,
-        direction: eye.forward(),
-    })
-}
-
 /// How the wand turns while the pointer travels.
 fn turn_by(eye: &Transform, travelled: Vec2) -> Quat {
     Quat::from_axis_angle(*eye.up(), travelled.x * 0.01)
         * Quat::from_axis_angle(*eye.right(), travelled.y * 0.01)
-}
-
-/// Where a ray is so deep in the view.
-fn at_depth(ray: &Ray3d, eye: &Transform, far: f32) -> Option<Vec3> {
-    let along = ray.direction.dot(*eye.forward());
-    // The ray starts at the near plane, and without perspective even behind the eye.
-    let ahead = (ray.origin - eye.translation).dot(*eye.forward());
-    (along > 0.1).then(|| ray.get_point((far - ahead) / along))
-}
-
-/// Where nothing is hit: on the work plane if it is near (the ground, unless it is in use), else as far
-/// away as the origin.
-fn on_plane(ray: &Ray3d, eye: &Transform, plane: &WorkPlane) -> Vec3 {
-    let plane = if plane.shown {
-        *plane
-    } else {
-        WorkPlane::default()
-    };
-    let ahead = (ray.origin - eye.translation).dot(*ray.direction);
-    let far = || ray.get_point(eye.translation.length().clamp(0.5, 10.0) - ahead);
-    plane.meet(ray, 30.0).unwrap_or_else(far)
-}
-
-/// Which way is up from the plane that things are put on.
-fn plane_up(plane: &WorkPlane) -> Vec3 {
-    if plane.shown {
-        *plane.normal()
-    } else {
-        Vec3::Y
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_drag_along_a_plane_stays_on_it_and_the_wheel_lifts_it() {
-        let eye = Transform::from_xyz(0.0, 1.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y);
-        let mut grip = Grip {
-            depth: 1.0,
-            plane: Some((Vec3::ZERO, Dir3::Y)),
-            from: Vec2::ZERO,
-            moved: true,
-            spent: Vec2::ZERO,
-        };
-        let towards = |x, y, z| Dir3::new(Vec3::new(x, y, z)).unwrap();
-        let ray = |d| Ray3d {
-            origin: eye.translation,
-            direction: d,
-        };
-        let at = grip.at(&ray(towards(0.3, -1.0, -1.0)), &eye).unwrap();
-        assert!(at.distance(Vec3::new(0.3, 0.0, 0.0)) < 1e-5, "{at}");
-        // Seen from its edge, or beyond the horizon, it stays where it is.
-        assert_eq!(grip.at(&ray(towards(0.0, 0.01, -1.0)), &eye), None);
-        assert_eq!(grip.at(&ray(towards(0.0, 1.0, -1.0)), &eye), None);
-        grip.nearer(2.0, &eye);
-        let at = grip.at(&ray(towards(0.3, -1.0, -1.0)), &eye).unwrap();
-        assert!(at.y > 0.01, "{at}");
-    }
 }

@@ -17,7 +17,7 @@ use midair_studio::{
     settings::{Settings, SnapSettings},
     show::{Drafts, Readouts},
     snap::{Snapper, box_of, own_box},
-    tools::Aim,
+    tools::{Aim, ToolChanged},
     units::length,
 };
 
@@ -30,13 +30,14 @@ use crate::gamepad::Pad;
 use crate::orbit::Orbit;
 use crate::panels::Screen;
 use crate::pointer::Pointer;
+use crate::reach::{self, Cursor};
 
 /// The handles and what is dragged by them.
 #[derive(Resource, Clone, Debug)]
 pub struct Gizmo {
     /// What they do; `None` while they are put away.
     pub mode: Option<Mode>,
-    /// They were asked for since the mode that draws was taken: there they would be in the way.
+    /// They were asked for since this mode was taken: where a press draws they would be in the way.
     asked: bool,
     frame: Option<Frame>,
     hovered: Option<Handle>,
@@ -93,10 +94,15 @@ type Scene<'w> = (
     Res<'w, Aim>,
 );
 
+/// Another mode was taken: what was asked for in the one before may be in its way.
+pub(crate) fn put_away(_: On<ToolChanged>, mut gizmo: ResMut<Gizmo>) {
+    gizmo.asked = false;
+}
+
 pub(crate) fn steer(
     controls: Res<Controls>,
     (screen, pointer, pad): (Res<Screen>, Res<Pointer>, Res<Pad>),
-    windows: Query<&Window>,
+    cursor: Res<Cursor>,
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     (project, selection, settings, aim): Scene,
     input: Res<HandsInput>,
@@ -118,15 +124,8 @@ pub(crate) fn steer(
             gizmo.asked = true;
         }
     }
-    if gizmo.asked && !aim.draws {
-        gizmo.asked = false;
-    }
-    let cursor = windows.iter().find_map(Window::cursor_position);
-    let cursor = cursor.filter(|at| at.is_finite());
-    let ray = cursor.and_then(|at| {
-        let eye = GlobalTransform::from(*eye);
-        camera.viewport_to_world(&eye, at).ok()
-    });
+    let cursor = cursor.at();
+    let ray = cursor.and_then(|at| reach::ray(camera, eye, at));
     if let Some(mut drag) = gizmo.drag.take() {
         let lead = drag.before[0].0;
         // Undo, another tool or another document have taken it out of the pointer's hands.
