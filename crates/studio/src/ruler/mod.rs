@@ -74,10 +74,22 @@ pub fn selected_box(
     selection: &Selection,
     drafts: &Drafts,
 ) -> Option<(Vec3, Vec3)> {
+    box_of_all(project, selection, drafts, |object| {
+        own_box(project, object)
+    })
+}
+
+/// The box in the world of what is selected, from that of each in its own frame.
+fn box_of_all(
+    project: &Project,
+    selection: &Selection,
+    drafts: &Drafts,
+    own: impl Fn(&Object) -> Option<(Vec3, Vec3)>,
+) -> Option<(Vec3, Vec3)> {
     let boxes = selection.0.iter().filter_map(|&id| {
         let object = project.document().object(id)?;
         let placement = drafts.get(id).unwrap_or(&object.placement);
-        Some(box_of(placement, own_box(project, object)?))
+        Some(box_of(placement, own(object)?))
     });
     boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }
@@ -125,21 +137,6 @@ fn made_box(project: &Project, evaluations: &Evaluations, object: &Object) -> Op
     ))
 }
 
-/// The box in the world of what is selected, as large as what is seen of it.
-fn seen_box(
-    project: &Project,
-    evaluations: &Evaluations,
-    selection: &Selection,
-    drafts: &Drafts,
-) -> Option<(Vec3, Vec3)> {
-    let boxes = selection.0.iter().filter_map(|&id| {
-        let object = project.document().object(id)?;
-        let placement = drafts.get(id).unwrap_or(&object.placement);
-        Some(box_of(placement, made_box(project, evaluations, object)?))
-    });
-    boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
-}
-
 fn say(
     (project, evaluations): (Res<Project>, Res<Evaluations>),
     selection: Res<Selection>,
@@ -152,7 +149,9 @@ fn say(
     if let Some((a, b)) = ruler.ends() {
         readouts.say(a.midpoint(b), length(a.distance(b), unit));
     }
-    if let Some((low, high)) = seen_box(&project, &evaluations, &selection, &drafts) {
+    // As large as what is seen of it.
+    let seen = |object: &Object| made_box(&project, &evaluations, object);
+    if let Some((low, high)) = box_of_all(&project, &selection, &drafts, seen) {
         let foot = Vec3::new(low.x.midpoint(high.x), low.y, high.z);
         readouts.say(foot, size(high - low, unit));
     }
