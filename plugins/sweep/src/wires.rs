@@ -141,7 +141,7 @@ pub(crate) fn draw(
         if let Some((object, left)) = &mut wires.waits {
             let seen = map.get(*object).is_some_and(|e| drawn_as.contains(e));
             // Where it cannot be made, or what was swept is hidden, nothing will be seen either.
-            if seen || evaluations.outstanding() == 0 {
+            if seen || evaluations.progress().next().is_none() {
                 *left -= time.delta_secs();
             }
             // Taken back, or in the way of nothing any more.
