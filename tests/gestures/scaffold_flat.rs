@@ -3,7 +3,7 @@
 use bevy::input::gamepad::GamepadButton;
 use bevy::math::DVec3;
 use bevy::prelude::*;
-use midair_document::ConstructionLine;
+use midair_document::{ConstructionLine, DrawnStroke};
 use midair_scaffold::SCAFFOLD;
 use midair_studio::command::Command;
 use midair_studio::hands::Hands;
@@ -20,6 +20,11 @@ impl Desk {
     fn drawn_lines(&self) -> Vec<ConstructionLine> {
         let all = self.document().objects();
         all.filter_map(|(_, o)| o.line().cloned()).collect()
+    }
+
+    fn drawn_strokes(&self) -> Vec<DrawnStroke> {
+        let all = self.document().objects();
+        all.filter_map(|(_, o)| o.stroke().cloned()).collect()
     }
 }
 
@@ -71,11 +76,7 @@ fn a_mouse_draws_from_points_and_along_axes() {
     }
     desk.mouse(MouseButton::Left, false);
     desk.wait(3);
-    let strokes: Vec<_> = desk
-        .document()
-        .objects()
-        .filter_map(|(_, o)| o.stroke().cloned())
-        .collect();
+    let strokes = desk.drawn_strokes();
     assert_eq!(strokes.len(), 1, "{:?}", desk.warnings());
     let normal = (corners[1] - corners[0])
         .cross(corners[2] - corners[0])
@@ -125,11 +126,7 @@ fn what_is_drawn_keeps_its_depth_and_a_press_on_one_spot_is_no_stroke() {
         }
         desk.mouse(MouseButton::Left, false);
         desk.wait(3);
-        let strokes: Vec<_> = desk
-            .document()
-            .objects()
-            .filter_map(|(_, o)| o.stroke().cloned())
-            .collect();
+        let strokes = desk.drawn_strokes();
         assert_eq!(strokes.len(), 1, "{:?}", desk.warnings());
         let raw = &strokes[0].raw;
         let deep: Vec<f32> = raw.iter().map(|p| desk.seen(p.as_vec3()).z).collect();
