@@ -227,7 +227,13 @@ impl Descent<'_> {
         // is settled on a large block would be settled on each of its bricks as well.
         let slack = self.slack * (1.0 + 0.25 * level as f32);
         let mut thin = Vec::with_capacity(tape.len());
-        let range = self.program.prune(tape, centre, half, slack, &mut thin);
+        let range = self.program.prune(
+            tape,
+            (centre, half),
+            self.program.around(),
+            slack,
+            &mut thin,
+        );
         if range.low > 0.0 {
             return None;
         }

@@ -121,7 +121,8 @@ impl Leaf {
             centre: c,
             radius: half * self.diagonal + around / self.scale,
             world: centre,
-            half: half + around,
+            half,
+            around,
         }
     }
 

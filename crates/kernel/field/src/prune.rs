@@ -20,8 +20,8 @@ impl Interval {
 }
 
 impl Program {
-    /// Bounds φ no further than [`Self::around`] from the cube of half side `half` about `centre`,
-    /// each leaf's bounds widened by `slack`, and writes to `out` the part of `tape` that can matter there.
+    /// Bounds φ no further than `around` from the cube of half side `half` about `centre`, each leaf's
+    /// bounds widened by `slack`, and writes to `out` the part of `tape` that can matter there.
     ///
     /// An operand is left out where the other side of its operator wins at every point of the cube,
     /// so what remains has the very same values. Since nested solids are stretches of the same
@@ -29,8 +29,8 @@ impl Program {
     pub(crate) fn prune(
         &self,
         tape: &[Instr],
-        centre: Vec3,
-        half: f32,
+        (centre, half): (Vec3, f32),
+        around: f32,
         slack: f32,
         out: &mut Vec<Instr>,
     ) -> Interval {
@@ -40,7 +40,7 @@ impl Program {
             match instr {
                 Instr::Load(leaf) => {
                     let (low, high) =
-                        self.leaves[leaf as usize].range(centre, half, self.around(), self.step());
+                        self.leaves[leaf as usize].range(centre, half, around, self.step());
                     let range = Interval {
                         low: low - slack,
                         high: high + slack,

@@ -177,17 +177,23 @@ impl Program {
         self.brick_values(coord, &self.tape, self.rounding(), scratch)
     }
 
-    /// Bounds of φ on a cube, and a little around it.
-    pub(crate) fn bounds_of(&self, centre: Vec3, half: f32) -> (f32, f32) {
+    /// Bounds of φ no further than `around` from a cube.
+    pub(crate) fn bounds_of(&self, centre: Vec3, half: f32, around: f32) -> (f32, f32) {
         let mut thin = Vec::new();
-        let range = self.prune(&self.tape, centre, half, self.rounding(), &mut thin);
+        let range = self.prune(
+            &self.tape,
+            (centre, half),
+            around,
+            self.rounding(),
+            &mut thin,
+        );
         (range.low, range.high)
     }
 
-    /// The greatest |∇φ| on a cube and a little around it, if known.
-    pub(crate) fn steepest(&self, centre: Vec3, half: f32) -> Option<f32> {
+    /// The greatest |∇φ| no further than `around` from a cube, if known.
+    pub(crate) fn steepest(&self, centre: Vec3, half: f32, around: f32) -> Option<f32> {
         self.leaves.iter().try_fold(1.0f32, |most, leaf| {
-            Some(most.max(leaf.slope(centre, half, self.around())?))
+            Some(most.max(leaf.slope(centre, half, around)?))
         })
     }
 

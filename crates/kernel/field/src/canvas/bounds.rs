@@ -59,21 +59,31 @@ impl Painting {
                     (here - slope, (here + slope).min(family.at_axis(d.max(0.0))))
                 }
                 Inking::Polygon(area) => {
-                    let here = area.at(family, c);
-                    let slope = stroke.slope / stroke.weight * block.radius;
-                    let h = ((c - area.origin).dot(area.axes[2]).abs() - radius) * area.inverse;
-                    (
-                        here - slope,
-                        (here + slope).min(family.at_plane(h.max(0.0))),
-                    )
+                    let to_local = stroke.to_local.as_ref();
+                    match area.seen(c, radius, &block.within, to_local) {
+                        None => {
+                            slope = 0.0;
+                            (0.0, 0.0)
+                        }
+                        Some(seen) => {
+                            let [near, far] = seen.heights.map(|h| family.at_plane(h));
+                            if seen.is_within() {
+                                (far, near)
+                            } else {
+                                let here = area.at(family, c);
+                                let slope = stroke.slope / stroke.weight * block.radius;
+                                (here - slope, (here + slope).min(near))
+                            }
+                        }
+                    }
                 }
                 Inking::Field(program, radius) => {
-                    let (low, high) = program.bounds_of(block.world, block.half);
+                    let (low, high) = program.bounds_of(block.world, block.half, block.around);
                     slope = if low >= *radius || high <= -radius {
                         // Wholly outside or inside of where it falls off.
                         0.0
                     } else {
-                        let steep = program.steepest(block.world, block.half);
+                        let steep = program.steepest(block.world, block.half, block.around);
                         let steep = steep.unwrap_or(f32::INFINITY);
                         slope * stroke.weight * HALF_SPACE_SLOPE / radius * steep
                     };

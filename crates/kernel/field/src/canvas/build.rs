@@ -1,8 +1,9 @@
 use glam::{Affine3A, Vec3};
 use midair_mesh::Aabb;
 
+use super::area::Area;
 use super::kernel::{Edge, Family, HALF_SPACE_SLOPE};
-use super::paint::{Area, CHUNK, Chunk, GROUP, Inked, Inking, Painting, Segment};
+use super::paint::{CHUNK, Chunk, GROUP, Inked, Inking, Painting, Segment};
 use super::stroke::{Canvas, Flat, Skeleton, Stroke, unnamed};
 use crate::recipe::transformed;
 use crate::{CompileError, Node, Program, Recipe};

@@ -1,5 +1,6 @@
 //! A painting: strokes with skeletons that melt into one convolution surface (3DBrushVR §3–4).
 
+mod area;
 mod bounds;
 mod build;
 mod kernel;

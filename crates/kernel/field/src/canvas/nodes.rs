@@ -5,8 +5,9 @@ use std::cell::RefCell;
 use glam::{Affine3A, Vec3};
 use midair_mesh::Aabb;
 
+use super::area::Area;
 use super::kernel::{Edge, Family, T, half_space, power};
-use super::paint::{Area, Inked, Segment};
+use super::paint::{Inked, Segment};
 use super::stroke::HARD;
 use crate::shape::{NODES, Points};
 

@@ -1,7 +1,8 @@
-use glam::{Affine3A, IVec3, Vec2, Vec3};
+use glam::{Affine3A, IVec3, Vec3};
 use midair_mesh::Aabb;
 
-use super::kernel::{Edge, Family, T, clearance, half_space, turns};
+use super::area::Area;
+use super::kernel::{Family, T, half_space};
 use super::nodes::{
     Layers, away, axis, beside, blended, edge, erase_from, erased, join, join_inner, level, line,
     moved, nearest, polygon, profile, raise,
@@ -66,16 +67,6 @@ pub(super) enum Inking {
     Canvas(Box<Painting>),
 }
 
-#[derive(Clone, Debug)]
-pub(super) struct Area {
-    pub origin: Vec3,
-    pub axes: [Vec3; 3],
-    /// In supports.
-    pub corners: Vec<Vec2>,
-    pub edges: Vec<Edge>,
-    pub inverse: f32,
-}
-
 /// A led point between two places: it moves by `along` while its radius goes from `radius` to
 /// `radius + wider`.
 #[derive(Clone, Copy, Debug)]
@@ -132,13 +123,16 @@ pub(crate) struct Place<'a> {
     pub local_step: f32,
 }
 
-/// A block of space, in the canvas's frame and in the world.
+/// A cube of space and what is no further than `around` from it, in the canvas's frame and in the
+/// world.
 pub(crate) struct Block {
     pub within: Aabb,
     pub centre: Vec3,
     pub radius: f32,
+    /// The cube of the world: its middle and half its side.
     pub world: Vec3,
     pub half: f32,
+    pub around: f32,
 }
 
 impl Painting {
@@ -319,13 +313,12 @@ impl Painting {
                 true
             }
             Inking::Polygon(area) => {
-                let (flat, height) = area.flat(points.centre);
-                let radius = points.radius * area.inverse;
-                let clear = clearance(&area.corners, flat);
-                if height.abs() - radius > 1.0 || clear + radius < -1.0 {
+                let to_local = stroke.to_local.as_ref();
+                let view = area.seen(points.centre, points.radius, &place.within, to_local);
+                let Some(view) = view else {
                     return false;
-                }
-                if clear - radius > 1.0 {
+                };
+                if view.is_within() {
                     // No edge is felt: it is a plane without end.
                     let [nx, ny, nz] = (area.axes[2] * area.inverse).to_array();
                     let from = area.origin.dot(area.axes[2]) * area.inverse;
@@ -335,7 +328,7 @@ impl Painting {
                     }
                     return true;
                 }
-                match area.only_edge(flat, radius) {
+                match area.only_edge(view.flat, view.radius) {
                     Some((only, right)) => {
                         edge(&self.family, area, only, right, stroke.weight, points, out)
                     }
@@ -346,7 +339,7 @@ impl Painting {
             Inking::Field(program, radius) => {
                 let half = 3.5 * program.step();
                 let centre = (place.first.as_vec3() + 3.5) * program.step();
-                let (low, high) = program.bounds_of(centre, half);
+                let (low, high) = program.bounds_of(centre, half, 0.0);
                 if low >= *radius {
                     return false;
                 }
@@ -462,41 +455,6 @@ impl Painting {
             .filter(|c| !self.strokes[c.stroke as usize].erase)
             .map(away)
             .fold(f32::INFINITY, f32::min)
-    }
-}
-
-impl Area {
-    #[inline(always)]
-    pub(super) fn at(&self, family: &Family, p: Vec3) -> f32 {
-        let (flat, height) = self.flat(p);
-        family.at_polygon(&self.edges, flat, height)
-    }
-
-    /// The edge that alone is felt, and neither of its ends, around a place of its plane, with the angle
-    /// of the turns that the polygon makes right of it; all in supports.
-    fn only_edge(&self, flat: Vec2, radius: f32) -> Option<(&Edge, f32)> {
-        let reach = 1.001 * (1.0 + radius);
-        let mut near = self.edges.iter().filter(|e| e.distance(flat) < reach);
-        let only = near.next()?;
-        if near.next().is_some() {
-            return None;
-        }
-        // Where it is nearly passed, a place beside it, still far from all other edges.
-        let left = only.left(flat.x, flat.y);
-        let right = match left {
-            0.5.. => turns(&self.corners, flat) - 1,
-            ..-0.5 => turns(&self.corners, flat),
-            _ => turns(&self.corners, only.beside(flat, -0.5)),
-        };
-        Some((only, std::f32::consts::TAU * right as f32))
-    }
-
-    /// A place in the polygon's plane and above it, in supports.
-    #[inline(always)]
-    pub(super) fn flat(&self, p: Vec3) -> (Vec2, f32) {
-        let q = (p - self.origin) * self.inverse;
-        let flat = Vec2::new(q.dot(self.axes[0]), q.dot(self.axes[1]));
-        (flat, q.dot(self.axes[2]))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::kernel::{T, clearance};
+use super::kernel::T;
 use super::nodes::axis;
 use super::paint::{Block, FAR, Inked, Inking, Painting, touch};
 use super::stroke::HARD;
@@ -51,13 +51,10 @@ impl Painting {
                 let s = (-s0).clamp(0.0, length * inverse);
                 (d2 + (s0 + s) * (s0 + s)).sqrt() - radius * inverse < 1.001
             }
-            Inking::Polygon(area) => {
-                let (flat, height) = area.flat(c);
-                let radius = radius * area.inverse;
-                height.abs() - radius < 1.001 && clearance(&area.corners, flat) + radius > -1.001
-            }
+            Inking::Polygon(area) => area.seen(c, radius, &block.within, None).is_some(),
             Inking::Field(program, wide) => {
-                program.bounds_of(block.world, block.half).0 < wide * 1.001
+                let (low, _) = program.bounds_of(block.world, block.half, block.around);
+                low < wide * 1.001
             }
             Inking::Canvas(_) => true,
         }

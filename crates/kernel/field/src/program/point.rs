@@ -20,7 +20,13 @@ impl Program {
     /// operands that cannot matter there.
     pub fn part(&self, centre: Vec3, half: f32) -> Part<'_> {
         let mut tape = Vec::new();
-        self.prune(&self.tape, centre, half, self.rounding(), &mut tape);
+        self.prune(
+            &self.tape,
+            (centre, half),
+            self.around(),
+            self.rounding(),
+            &mut tape,
+        );
         Part {
             program: self,
             tape,

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Quat, Vec3};
 use midair_mesh::{Aabb, MeshHash};
 use proptest::prelude::*;
 
@@ -10,8 +10,8 @@ use crate::bake::Volume;
 use crate::fuse::bricks_touching;
 use crate::scratch::EXACT;
 use crate::{
-    Brick, FuseError, FuseOptions, Grid, MeshSource, Node, Op, Placement, Primitive, Program,
-    Recipe, fuse,
+    Brick, Canvas, FuseError, FuseOptions, Grid, MeshSource, Node, Op, Placement, Primitive,
+    Program, Recipe, Skeleton, Stroke, fuse,
 };
 
 /// A ring of which every mesh hash is the name.
@@ -178,4 +178,32 @@ proptest! {
         let part = program.part(around, STEP);
         prop_assert_eq!(part.at_all(&points).map(f32::to_bits), points.map(|p| part.at(p).to_bits()));
     }
+}
+
+#[test]
+fn a_painting_holds_values_no_further_from_a_volume_than_normals_need() {
+    let stroke = Stroke {
+        placement: Placement {
+            translation: Vec3::new(0.03, 0.02, 0.01),
+            rotation: Quat::from_scaled_axis(Vec3::new(0.2, 0.5, 0.1)),
+            ..Placement::IDENTITY
+        },
+        ..Stroke::new(Skeleton::Volume(ring()), 0.12)
+    };
+    let canvas = Canvas {
+        strokes: vec![stroke.clone()],
+        ..Canvas::default()
+    };
+    let step = 0.005;
+    let make = |recipe: &Recipe, at: &Placement| {
+        let program = Program::compile(recipe, at, step, &Ring).expect("compiles");
+        fuse(&program, &FuseOptions::default())
+            .expect("fuses")
+            .bricks()
+            .count()
+    };
+    let painted = make(&Recipe::new(Node::Canvas(canvas)), &Placement::IDENTITY);
+    let alone = make(&ring(), &stroke.placement);
+    // The potential falls off as φ rises: no brick more is wanted than for the mesh as an operand.
+    assert!(painted <= alone + alone / 20, "{painted} {alone}");
 }
