@@ -225,7 +225,7 @@ impl Desk {
             Key::Character(c) if down => Some(c.clone()),
             _ => None,
         };
-        self.app.world_mut().write_message(KeyboardInput {
+        let input = KeyboardInput {
             key_code,
             logical_key: logical,
             state: if down {
@@ -236,7 +236,10 @@ impl Desk {
             text,
             repeat: false,
             window,
-        });
+        };
+        let world = self.app.world_mut();
+        world.write_message(WindowEvent::KeyboardInput(input.clone()));
+        world.write_message(input);
     }
 
     /// Keys down one after the other, and up again.
@@ -284,7 +287,7 @@ impl Desk {
             position: to,
             delta: before.map(|b| to - b),
         };
-        // Panels read the window's own stream of events.
+        // Panels and buttons read the window's own stream of events.
         world.write_message(WindowEvent::CursorMoved(moved.clone()));
         world.write_message(moved);
     }

@@ -305,7 +305,7 @@ fn the_arrows_reach_what_a_long_list_does_not_show() {
 }
 
 impl Desk {
-    fn mode(&self) -> String {
+    pub fn mode(&self) -> String {
         let tools = self.world().resource::<midair_studio::tools::Tools>();
         tools.active().unwrap().id.as_str().to_owned()
     }

@@ -4,6 +4,7 @@
 mod brush;
 mod brush_faults;
 mod brush_session;
+mod by_mouse;
 mod carry;
 mod desk;
 mod dropping;
@@ -37,6 +38,7 @@ mod scaffold_flat;
 mod scaffold_session;
 mod sequence;
 mod shapes;
+mod slow_frames;
 mod small;
 mod sources;
 mod studio;

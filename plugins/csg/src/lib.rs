@@ -45,9 +45,8 @@ impl Plugin for AssemblePlugin {
         .add_systems(
             Update,
             (
-                act::ask.in_set(StudioSet::Ask),
-                // What is fused is what was marked in the same frame as well.
-                (act::select, act::operate, act::finish)
+                // What is marked is what is touched by now, what is fused what was marked in the same frame as well.
+                (act::ask, act::select, act::operate, act::finish)
                     .chain()
                     .in_set(StudioSet::Act),
                 // What is made ahead is asked for first; then the preview finds it at rest.

@@ -15,7 +15,7 @@ use midair_studio::{
     tools::Tools,
 };
 
-use crate::bindings::{Control, Controls, Device};
+use crate::bindings::{Control, Controls, Cursor, Device};
 use crate::orbit::Orbit;
 use crate::panels::Screen;
 use crate::pointer::{Pointer, TREMBLE};
@@ -61,7 +61,7 @@ pub(crate) fn select(ids: Vec<ObjectId>, how: How) -> Command {
 pub(crate) fn drag(
     controls: Res<Controls>,
     tools: Res<Tools>,
-    windows: Query<&Window>,
+    cursor: Res<Cursor>,
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     (project, drafts): (Res<Project>, Res<Drafts>),
     evaluations: Res<Evaluations>,
@@ -77,8 +77,7 @@ pub(crate) fn drag(
         pointer.band = None;
         return;
     }
-    let cursor = windows.iter().find_map(Window::cursor_position);
-    if let Some(at) = cursor.filter(|at| at.is_finite()) {
+    if let Some(at) = cursor.at() {
         band.to = at;
     }
     if controls.pressed_on(Control::Act, Device::Keys) {

@@ -15,6 +15,8 @@ pub(crate) struct Grip {
     pub(crate) moved: bool,
     /// Pixels that went into turning: the thing stays where it is meanwhile.
     pub(crate) spent: Vec2,
+    /// It was let go over a panel, which is asked first whether it takes it.
+    pub(crate) offered: bool,
 }
 
 impl Grip {
@@ -59,6 +61,7 @@ mod tests {
             from: Vec2::ZERO,
             moved: true,
             spent: Vec2::ZERO,
+            offered: false,
         };
         let towards = |x, y, z| Dir3::new(Vec3::new(x, y, z)).unwrap();
         let ray = |d| Ray3d {

@@ -7,7 +7,6 @@ use midair_studio::{
     hold::Held,
     objects::Ask,
     panel::{Dock, Panels},
-    pick::Touch,
     project::{Project, Selection, Then},
     ruler::Ruler,
     settings::Settings,
@@ -79,15 +78,15 @@ pub(crate) fn commands(
     (tools, panels, hints): (Res<Tools>, Res<Panels>, Res<Hints>),
     (pointer, ruler): (Res<Pointer>, Res<Ruler>),
     (project, selection): (Res<Project>, Res<Selection>),
-    (held, touch): (Res<Held>, Res<Touch>),
+    held: Res<Held>,
     mut commands: MessageWriter<Command>,
 ) {
     for (control, command) in [
         (Control::Undo, Command::Undo),
         (Control::Redo, Command::Redo),
     ] {
-        for _ in 0..controls.times(control) {
-            commands.write(command.clone());
+        if controls.fired(control) {
+            commands.write(command);
         }
     }
     let brush = tools.active().is_some_and(|t| t.id.as_str() == "brush");
@@ -165,10 +164,9 @@ pub(crate) fn commands(
     for (control, tool) in carries.into_iter().zip(tools.all()) {
         if controls.just_pressed(control) {
             // As with other keys: what is pointed at, where nothing is held or selected.
-            let pointed = touch.get(pointer.leading).map(|t| t.object);
             let nothing = held.is_empty() && selection.0.is_empty();
             commands.write(Command::Carry {
-                objects: pointed.filter(|_| nothing).into_iter().collect(),
+                objects: pointer.under().filter(|_| nothing).into_iter().collect(),
                 to: tool.id.clone(),
             });
         }

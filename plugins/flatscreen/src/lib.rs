@@ -20,6 +20,7 @@ mod monitors;
 mod names;
 mod orbit;
 mod panels;
+mod passes;
 mod place;
 mod pointer;
 mod projection;
@@ -49,7 +50,6 @@ impl Plugin for FlatscreenPlugin {
             .resource_mut::<EguiGlobalSettings>()
             .auto_create_primary_context = false;
         app.init_resource::<Pointer>()
-            .init_resource::<reach::Cursor>()
             .init_resource::<Gizmo>()
             .init_resource::<Pad>()
             .init_resource::<focus::Typing>()
@@ -58,7 +58,8 @@ impl Plugin for FlatscreenPlugin {
             .init_resource::<focus::Focus>()
             .add_systems(
                 PreUpdate,
-                focus::drive
+                (passes::divide, focus::drive)
+                    .chain()
                     .after(InputManagerSystem::Update)
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
@@ -69,7 +70,6 @@ impl Plugin for FlatscreenPlugin {
             .add_systems(
                 Update,
                 (
-                    reach::follow,
                     view::carry,
                     gamepad::lead,
                     gamepad::camera,

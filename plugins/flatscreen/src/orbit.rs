@@ -14,7 +14,7 @@ use midair_studio::{
 
 pub(crate) use midair_studio::show::FIELD_OF_VIEW;
 
-use crate::bindings::{Control, Controls};
+use crate::bindings::{Control, Controls, Cursor};
 use crate::panels::Screen;
 use crate::pointer::Pointer;
 
@@ -191,7 +191,7 @@ impl Drag {
 pub(crate) fn steer(
     controls: Res<Controls>,
     scroll: Res<AccumulatedMouseScroll>,
-    mut moved: MessageReader<CursorMoved>,
+    cursor: Res<Cursor>,
     screen: Res<Screen>,
     (pointer, aim): (Res<Pointer>, Res<Aim>),
     time: Res<Time>,
@@ -203,24 +203,21 @@ pub(crate) fn steer(
     let (mut orbit, mut transform) = camera.into_inner();
     let window = windows.iter().next();
     let height = window.map_or(720.0, |w| w.height().max(1.0));
-    let travelled: Vec2 = moved
-        .read()
-        .filter_map(|m| m.delta)
-        .filter(|d| d.is_finite())
-        .sum();
-    let panel = screen.covers(window.and_then(Window::cursor_position));
+    let travelled = cursor.travelled();
+    let panel = screen.covers(cursor.at());
     // What began in the view goes on over the panels, and the other way about.
     let began = Drag::ALL
         .into_iter()
         .find(|&(_, control)| controls.just_pressed(control) && !panel)
         .map(|(drag, _)| drag);
-    *drag = began.or(drag.filter(|d| controls.pressed(d.control())));
     let mut next = *orbit;
+    // What was travelled came before what went down or up in this frame.
     if let Some(drag) = *drag
         && travelled != Vec2::ZERO
     {
         next.drag(drag, travelled, height);
     }
+    *drag = began.or(drag.filter(|d| controls.pressed(d.control())));
     if *drag == Some(Drag::Look) {
         next.fly(&controls, time.delta_secs());
     }

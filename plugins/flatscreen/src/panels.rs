@@ -13,7 +13,7 @@ use midair_studio::{
     settings::{LookSettings, Settings},
 };
 
-use crate::bindings::Controls;
+use crate::bindings::{Controls, Cursor};
 use crate::focus::{Focus, Map};
 use crate::gamepad::Pad;
 use crate::hints;
@@ -35,8 +35,8 @@ pub(crate) struct Screen {
     typing: bool,
     /// A field takes letters.
     text: bool,
-    /// Something that floats over the view lies under the pointer.
-    floating: bool,
+    /// Where what floats over the view lies.
+    layers: Option<egui::Context>,
 }
 
 impl Screen {
@@ -46,7 +46,9 @@ impl Screen {
             return true;
         };
         let at = self.point(cursor);
-        self.busy || self.floating || !view.contains(at)
+        let floats = |layer: egui::LayerId| layer.order != egui::Order::Background;
+        let over = self.layers.as_ref().and_then(|ctx| ctx.layer_id_at(at));
+        self.busy || over.is_some_and(floats) || !view.contains(at)
     }
 
     /// Whether keys are a panel's and not shortcuts.
@@ -292,13 +294,10 @@ fn draw(
     }
     notices(ctx, view, world);
     focus.settle(ctx, map);
-    let at = ctx.input(|i| i.pointer.interact_pos());
     screen.text = ctx.text_edit_focused();
     screen.typing = screen.text || ctx.any_popup_open() || focus.is_inside();
     screen.busy = ctx.egui_is_using_pointer() || ctx.any_popup_open();
-    screen.floating = at
-        .and_then(|at| ctx.layer_id_at(at))
-        .is_some_and(|layer| layer.order != egui::Order::Background);
+    screen.layers = Some(ctx.clone());
 }
 
 fn close(info: &PanelInfo) -> Command {
@@ -423,7 +422,7 @@ pub(crate) fn drop(
     mut dropped: MessageReader<FileDragAndDrop>,
     screen: Res<Screen>,
     pointer: Res<Pointer>,
-    windows: Query<&Window>,
+    cursor: Res<Cursor>,
     mut commands: MessageWriter<Command>,
 ) {
     let (mut meshes, mut pictures) = (Vec::new(), Vec::new());
@@ -438,7 +437,7 @@ pub(crate) fn drop(
             }
         }
     }
-    let cursor = windows.iter().find_map(Window::cursor_position);
+    let cursor = cursor.at();
     if !pictures.is_empty() {
         let at = pointer.pose(pointer.leading).position;
         commands.write(Command::Reference {

@@ -5,10 +5,11 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::ReadRapierContext;
 use midair_studio::{
     command::Command,
+    document::ObjectId,
     drawing::Drawing,
     hands::{Action, ActionSet, HandFrame, HandsInput, Pose, Side},
     objects::How,
-    pick::{self, Proxy, Touch},
+    pick::{self, PICK_RADIUS, Proxy, Touch},
     plane::WorkPlane,
     project::{Project, Shelf},
     ruler::{MeasureAsk, Ruler},
@@ -18,13 +19,13 @@ use midair_studio::{
 };
 
 use crate::band::{self, Band};
-use crate::bindings::{Control, Controls, Device};
+use crate::bindings::{Control, Controls, Cursor, Device};
 use crate::gizmo::Gizmo;
 use crate::grip::Grip;
 use crate::orbit::{Orbit, lines, pixel};
 use crate::panels::Screen;
 use crate::place;
-use crate::reach::{self, Cursor, at_depth, on_plane, plane_up, rest};
+use crate::reach::{self, at_depth, on_plane, plane_up, rest};
 
 /// A click may tremble this many pixels before it is a drag.
 pub(crate) const TREMBLE: f32 = 3.0;
@@ -46,7 +47,8 @@ pub struct Pointer {
     acting: bool,
     /// How the wand is turned against the camera.
     turn: Quat,
-    over: bool,
+    /// What is under the pointer.
+    under: Option<ObjectId>,
     /// The point and the outward normal of the face under the pointer.
     pub(crate) face: Option<(Vec3, Vec3)>,
     /// A box that is drawn to select what lies in it.
@@ -73,7 +75,7 @@ impl Default for Pointer {
             grip: None,
             acting: false,
             turn: Quat::IDENTITY,
-            over: false,
+            under: None,
             face: None,
             band: None,
             stretching: false,
@@ -99,7 +101,12 @@ impl Pointer {
 
     /// Whether the pointer is over a thing and not over a panel.
     pub fn is_over(&self) -> bool {
-        self.over
+        self.under.is_some()
+    }
+
+    /// The thing under the pointer in this frame.
+    pub(crate) fn under(&self) -> Option<ObjectId> {
+        self.under
     }
 
     /// A component was picked from the library: it goes where one looks.
@@ -136,10 +143,9 @@ impl Pointer {
 }
 
 /// What the devices say, and what is under the pointer for others.
-type Devices<'w, 's> = (
+type Devices<'w> = (
     Res<'w, Controls>,
     Res<'w, AccumulatedMouseScroll>,
-    MessageReader<'w, 's, CursorMoved>,
     Res<'w, Cursor>,
 );
 
@@ -156,7 +162,7 @@ type Scene<'w, 's> = (
 );
 
 pub(crate) fn point(
-    (controls, scroll, mut moved, cursor): Devices,
+    (controls, scroll, cursor): Devices,
     (screen, gizmo, settings): (Res<Screen>, Res<Gizmo>, Res<Settings>),
     camera: Single<(&Camera, &Transform), With<Orbit>>,
     (context, proxies, touch, project, shelf, plane, aim, drawn): Scene,
@@ -167,14 +173,11 @@ pub(crate) fn point(
 ) {
     let (camera, eye) = camera.into_inner();
     let pressed = |control| controls.pressed_on(control, Device::Keys);
-    let travelled: Vec2 = moved
-        .read()
-        .filter_map(|m| m.delta)
-        .filter(|d| d.is_finite())
-        .sum();
+    let travelled = cursor.travelled();
     let cursor = cursor.at();
     let panel = screen.covers(cursor);
-    let free = !panel && !pointer.stretching && !gizmo.has_pointer();
+    let offered = pointer.grip.is_some_and(|grip| grip.offered);
+    let free = !panel && !pointer.stretching && !gizmo.has_pointer() && !offered;
     let began = |control| controls.just_pressed(control) && pressed(control) && free;
     let clicked = began(Control::Act);
     if controls.just_pressed(Control::SwapHands) && !pointer.stretching {
@@ -195,9 +198,9 @@ pub(crate) fn point(
     let unlatched = std::mem::take(&mut pointer.latched[side as usize]);
     let ray = cursor.and_then(|c| reach::ray(camera, eye, c));
     let mut pointed = None;
-    if let Some(mut grip) = pointer.grip {
+    if let Some(mut grip) = pointer.grip.filter(|_| !offered) {
         // In the frame of the release too: it comes to rest where it was dragged to.
-        if pressed(Control::Turn) {
+        if controls.was_pressed(Control::Turn) {
             let turn = turn_by(eye, travelled);
             pointer.turn =
                 (eye.rotation.inverse() * turn * eye.rotation * pointer.turn).normalize();
@@ -218,9 +221,9 @@ pub(crate) fn point(
             }
         }
         pointer.grip = Some(grip);
-    } else if !unlatched {
-        pointer.over = false;
-        let turning = aim.draws && pressed(Control::Turn);
+    } else if !unlatched && !offered {
+        pointer.under = None;
+        let turning = aim.draws && controls.was_pressed(Control::Turn);
         if turning {
             let turn = turn_by(eye, travelled);
             pointer.turn =
@@ -270,10 +273,14 @@ pub(crate) fn point(
                     position
                 };
                 pointer.drawn = drawing.then_some(far);
-                // A small thing is touched from a fingertip's breadth away as well.
-                let touched = touch.get(side).map(|t| t.object);
+                // A small thing is touched from a fingertip's breadth away as well, if the pointer is there still.
+                let breadth = PICK_RADIUS / input.metres_per_world;
+                let touched = touch
+                    .get(side)
+                    .filter(|t| t.point.distance(position) <= breadth)
+                    .map(|t| t.object);
                 let object = on.map(|on| on.id).or(hit.map(|h| h.object)).or(touched);
-                pointer.over = object.is_some();
+                pointer.under = object;
                 pointer.face = hit.map(|h| (h.point, h.normal));
                 pointed = Some(position);
                 if clicked && ruler.on {
@@ -284,17 +291,18 @@ pub(crate) fn point(
                         commands.write(band::select(ids, How::Toggle));
                     }
                 }
-                if grabs && pointer.over {
+                if grabs && object.is_some() {
                     pointer.grip = cursor.map(|from| Grip {
                         depth: (position - eye.translation).dot(*eye.forward()),
                         plane: plane.shown.then(|| (position, plane.normal())),
                         from,
                         moved: false,
                         spent: Vec2::ZERO,
+                        offered: false,
                     });
                 }
                 let draws = aim.draws && started;
-                if clicked && !pointer.over && !ruler.on && !draws {
+                if clicked && object.is_none() && !ruler.on && !draws {
                     pointer.band = cursor.map(|from| Band::new(from, !started));
                 }
                 let up = hit.map_or(Vec3::Y, |h| h.normal);
@@ -319,8 +327,15 @@ pub(crate) fn point(
         pointer.poses[other as usize] = rest(eye, other);
     }
     pointer.acting &= pressed(Control::Act);
-    if !pressed(Control::Grab) {
+    if offered {
         pointer.grip = None;
+    } else if !pressed(Control::Grab) {
+        // A mode's button takes what is in the hand: it stays there until the panels were shown once more.
+        let over = pointer.grip.filter(|_| panel && cursor.is_some());
+        pointer.grip = over.map(|grip| Grip {
+            offered: true,
+            ..grip
+        });
     }
     // Where it was picked there is no room: it goes where one looks.
     if pointer.grip.is_none() && !pointer.picked.is_empty() {

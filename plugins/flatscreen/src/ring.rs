@@ -11,7 +11,7 @@ use midair_studio::{
     tools::Tools,
 };
 
-use crate::bindings::{Control, Controls};
+use crate::bindings::{Control, Controls, Cursor};
 use crate::panels::Screen;
 
 /// Its radius, in points.
@@ -37,14 +37,14 @@ impl Ring {
 pub(crate) fn turn(
     controls: Res<Controls>,
     (hands, held_things): (Res<Hands>, Res<Held>),
-    windows: Query<&Window>,
+    cursor: Res<Cursor>,
     tools: Res<Tools>,
     mut ring: ResMut<Ring>,
     mut commands: MessageWriter<Command>,
 ) {
     let held = controls.pressed(Control::Modes)
         || Side::BOTH.iter().any(|&s| hands.get(s).held(Action::Modes));
-    let cursor = windows.iter().find_map(Window::cursor_position);
+    let cursor = cursor.at();
     let mut next = *ring;
     let count = tools.all().len();
     if held {

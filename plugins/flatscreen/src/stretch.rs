@@ -7,7 +7,7 @@ use midair_studio::{
     world::{Similarity, WorldView},
 };
 
-use crate::bindings::{Control, Controls};
+use crate::bindings::{Control, Controls, Cursor};
 use crate::orbit::Orbit;
 use crate::pointer::Pointer;
 
@@ -31,16 +31,12 @@ pub(crate) fn stretch(
     mut stretching: Local<Option<Stretching>>,
     controls: Res<Controls>,
     world: Res<WorldView>,
-    mut moved: MessageReader<CursorMoved>,
+    cursor: Res<Cursor>,
     mut pointer: ResMut<Pointer>,
     eye: Single<&Transform, With<Orbit>>,
     mut input: ResMut<HandsInput>,
 ) {
-    let travelled: Vec2 = moved
-        .read()
-        .filter_map(|m| m.delta)
-        .filter(|d| d.is_finite())
-        .sum();
+    let travelled = cursor.travelled();
     let Some(now) = stretching.as_mut() else {
         if controls.just_pressed(Control::Stretch) && !pointer.holds() {
             let begun = Stretching {

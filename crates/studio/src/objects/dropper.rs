@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 
 use super::Ask;
+use crate::StudioSet;
 use crate::command::Command;
 use crate::hands::{Action, FilterHands, HandsInput, Side};
 use crate::pick::Touch;
@@ -13,6 +14,8 @@ pub struct Dropper {
     held: Held,
     /// Which hands acted in the frame before.
     acted: [bool; 2],
+    /// The hand that took with it in this frame.
+    taken: Option<Side>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,18 +45,17 @@ impl Dropper {
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Dropper>().add_systems(
         Update,
-        // What the ways in wrote is taken out again before anyone sees it, and recordings keep the ask.
-        take.in_set(FilterHands),
+        (
+            // What the ways in wrote is taken out again before anyone sees it, and recordings keep the ask.
+            take.in_set(FilterHands),
+            // What the hand touches where it acted is known by now.
+            like.in_set(StudioSet::Act),
+        ),
     );
 }
 
 /// Its click is not the tool's: the hands do not act while it is in one of them.
-fn take(
-    mut dropper: ResMut<Dropper>,
-    touch: Res<Touch>,
-    mut input: ResMut<HandsInput>,
-    mut commands: MessageWriter<Command>,
-) {
+fn take(mut dropper: ResMut<Dropper>, mut input: ResMut<HandsInput>) {
     if dropper.held == Held::No {
         return;
     }
@@ -65,13 +67,7 @@ fn take(
         Held::Yes => {
             let began = |side: &Side| acts[*side as usize] && !next.acted[*side as usize];
             if let Some(side) = Side::BOTH.into_iter().find(began) {
-                // On nothing it is put away.
-                if let Some(touched) = touch.get(side) {
-                    commands.write(Command::Objects(Ask::Like {
-                        ids: Vec::new(),
-                        of: touched.object,
-                    }));
-                }
+                next.taken = Some(side);
                 next.held = Held::Spent;
             }
         }
@@ -84,5 +80,19 @@ fn take(
         let down = &mut input.side(side).down;
         down.set(Action::Act, false);
         down.set(Action::Grab, false);
+    }
+}
+
+/// On nothing it is put away.
+fn like(mut dropper: ResMut<Dropper>, touch: Res<Touch>, mut commands: MessageWriter<Command>) {
+    if dropper.taken.is_none() {
+        return;
+    }
+    let touched = dropper.taken.take().and_then(|side| touch.get(side));
+    if let Some(touched) = touched {
+        commands.write(Command::Objects(Ask::Like {
+            ids: Vec::new(),
+            of: touched.object,
+        }));
     }
 }

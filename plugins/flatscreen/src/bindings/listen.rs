@@ -3,19 +3,18 @@
 //! Leafwing compares every pair of bindings in every frame to tell `Ctrl+Z` from `Z`; here a chord
 //! begins when its last part goes down, and only the longest that fits begins.
 
-use bevy::input::ButtonState;
-use bevy::input::gamepad::{Gamepad, GamepadAxis};
-use bevy::input::keyboard::KeyboardInput;
+use bevy::input::gamepad::{Gamepad, GamepadAxis, GamepadButtonStateChangedEvent};
 use bevy::platform::time::Instant;
 use bevy::prelude::*;
+use bevy::window::WindowEvent;
 use leafwing_input_manager::action_state::ActionState;
-use leafwing_input_manager::buttonlike::ButtonValue;
 use leafwing_input_manager::input_map::InputMap;
+use leafwing_input_manager::user_input::ModifierKey;
 use leafwing_input_manager::user_input::updating::CentralInputStore;
-use leafwing_input_manager::user_input::{ModifierKey, SpecificGamepadButton};
 use midair_studio::hands::HOLD;
 
-use super::part::{MODIFIERS, Part};
+use super::moments::{Cursor, Moments};
+use super::part::Part;
 use super::{Binding, Bindings, Context, Control, Device};
 
 /// A control that repeats does so this often, in seconds, once it is held.
@@ -150,10 +149,9 @@ impl Controls {
         self.fired.contains(&control)
     }
 
-    /// How many times it went down in this frame: within a slow one a key can be struck more than once.
-    /// One that is held fires again.
-    pub fn times(&self, control: Control) -> usize {
-        self.fired.iter().filter(|c| **c == control).count()
+    /// Whether it was down until something changed in this frame: what the pointer travelled was its.
+    pub fn was_pressed(&self, control: Control) -> bool {
+        self.pressed(control) && !self.just_pressed(control) || self.just_released(control)
     }
 
     /// Whether it is down by a key or button of `device`.
@@ -183,14 +181,17 @@ impl Controls {
 type Devices<'w, 's> = (
     Res<'w, ButtonInput<KeyCode>>,
     Res<'w, ButtonInput<MouseButton>>,
-    MessageReader<'w, 's, KeyboardInput>,
-    MessageReader<'w, 's, CursorMoved>,
+    MessageReader<'w, 's, WindowEvent>,
+    MessageReader<'w, 's, GamepadButtonStateChangedEvent>,
+    Query<'w, 's, &'static Window>,
     Query<'w, 's, (Entity, &'static Gamepad)>,
 );
 
 /// Reads the devices, before anything else of the frame asks what they say.
 pub(crate) fn listen(
-    (keys, mouse, mut struck, mut moved, pads): Devices,
+    (keys, mouse, mut events, mut on_pads, windows, pads): Devices,
+    mut moments: Local<Moments>,
+    mut cursor: ResMut<Cursor>,
     time: Res<Time>,
     bindings: Res<Bindings>,
     attention: Res<Attention>,
@@ -205,52 +206,17 @@ pub(crate) fn listen(
         controls.state.reset_all();
         controls.repeats.clear();
     }
-    let travelled: Vec2 = moved.read().filter_map(|m| m.delta).sum();
-    let struck: Vec<_> = struck.read().cloned().collect();
-    taps(&keys, &mouse, &pads, &mut store);
-    chords(struck.iter(), &mut store);
+    events.read().for_each(|event| moments.hear(event));
+    on_pads.read().for_each(|event| moments.hear_pad(event));
+    if attention.text {
+        moments.leave_out(|key| key != KeyCode::Escape && !is_function(key));
+    }
+    let now = windows.iter().find_map(Window::cursor_position);
+    moments.next(now, &mut cursor);
+    moments.tell(&mut store);
     let controls = &mut *controls;
-    controls.choose(&keys, &mouse, travelled, &pads);
+    controls.choose(&keys, &mouse, cursor.travelled(), &pads);
     controls.update(&store, *attention, time.delta_secs());
-    controls.strike_again(&struck);
-}
-
-/// A tap that is over within one frame is still a tap.
-fn taps(
-    keys: &ButtonInput<KeyCode>,
-    mouse: &ButtonInput<MouseButton>,
-    pads: &Query<(Entity, &Gamepad)>,
-    store: &mut CentralInputStore,
-) {
-    let down = ButtonValue::from_pressed(true);
-    for &key in keys.get_just_pressed().filter(|&&k| !keys.pressed(k)) {
-        store.update_buttonlike(key, down);
-    }
-    for &button in mouse.get_just_pressed().filter(|&&b| !mouse.pressed(b)) {
-        store.update_buttonlike(button, down);
-    }
-    for (entity, pad) in pads {
-        for &button in pad.get_just_pressed().filter(|&&b| !pad.pressed(b)) {
-            store.update_buttonlike(SpecificGamepadButton::new(entity, button), down);
-        }
-    }
-}
-
-/// A modifier that is let go of in the frame in which a key went down before that was meant for the key.
-fn chords<'a>(events: impl Iterator<Item = &'a KeyboardInput>, store: &mut CentralInputStore) {
-    let mut struck = false;
-    for event in events {
-        let modifier = MODIFIERS
-            .iter()
-            .any(|(m, _)| [m.left(), m.right()].contains(&event.key_code));
-        match event.state {
-            ButtonState::Pressed => struck |= !modifier && !event.repeat,
-            ButtonState::Released if modifier && struck => {
-                store.update_buttonlike(event.key_code, ButtonValue::from_pressed(true));
-            }
-            ButtonState::Released => {}
-        }
-    }
 }
 
 impl Controls {
@@ -366,22 +332,6 @@ impl Controls {
             }
         }
         self.repeat(dt);
-    }
-
-    /// Keys that were struck more than once in this frame: states know only of one time.
-    fn strike_again(&mut self, struck: &[KeyboardInput]) {
-        for bound in self.bounds.iter().filter(|b| b.active) {
-            let Part::Key(key) = self.mains[bound.main].0 else {
-                continue;
-            };
-            let strikes = struck
-                .iter()
-                .filter(|e| e.key_code == key && e.state.is_pressed() && !e.repeat)
-                .count();
-            let known = usize::from(self.state.just_pressed(&bound.control));
-            let more = strikes.saturating_sub(known);
-            self.fired.extend(std::iter::repeat_n(bound.control, more));
-        }
     }
 
     fn whole(&self, bound: &Bound, store: &CentralInputStore, pad: Entity) -> bool {

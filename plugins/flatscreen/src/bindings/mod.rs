@@ -5,6 +5,7 @@ mod control;
 mod file;
 mod keep;
 mod listen;
+mod moments;
 mod part;
 mod rebind;
 mod table;
@@ -15,6 +16,7 @@ use leafwing_input_manager::plugin::{CentralInputStorePlugin, InputManagerSystem
 pub use binding::{Binding, BindingFault, Stick};
 pub use control::{Context, Control, Group};
 pub use listen::{Attention, Controls};
+pub(crate) use moments::Cursor;
 pub use part::{Device, Part};
 pub(crate) use rebind::{Asked, Rebind, Rebinding};
 pub use table::Bindings;
@@ -24,6 +26,7 @@ pub(crate) fn plugin(app: &mut App) {
         .init_resource::<Bindings>()
         .init_resource::<Attention>()
         .init_resource::<Controls>()
+        .init_resource::<Cursor>()
         .init_resource::<Asked>()
         .init_resource::<Rebinding>()
         .add_systems(

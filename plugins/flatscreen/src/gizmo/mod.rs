@@ -25,12 +25,12 @@ pub(crate) use draw::draw;
 pub use handles::Mode;
 use handles::{Change, Frame, Handle};
 
-use crate::bindings::{Control, Controls, Device};
+use crate::bindings::{Control, Controls, Cursor, Device};
 use crate::gamepad::Pad;
 use crate::orbit::Orbit;
 use crate::panels::Screen;
 use crate::pointer::Pointer;
-use crate::reach::{self, Cursor};
+use crate::reach;
 
 /// The handles and what is dragged by them.
 #[derive(Resource, Clone, Debug)]
