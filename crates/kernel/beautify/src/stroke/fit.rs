@@ -39,9 +39,13 @@ pub struct Fitted {
 
 /// Samples of the curvature per segment (§4.2.2 asks for one at least).
 const SAMPLES: usize = 10;
+/// The same in a ring: wider apart a kink hides between two, and where they begin shows.
+const RING_SAMPLES: usize = 24;
 /// A magnitude is between these, as shares of the chord of its segment: a tangent runs the stroke's own way and
 /// never outgrows its segment.
 const ROOM: (f64, f64) = (0.002, 4.0);
+/// In a ring no shorter than this: a cusp that hides between two samples of the curvature is a kink to the eye.
+const RING_ROOM: f64 = 0.15;
 /// Tangent magnitudes to begin with, as shares of the chords; the first is the paper's.
 const STARTS: [f64; 4] = [1.0 / 3.0, 0.55, 0.2, 0.9];
 /// Steps from each start, after which only the best …
@@ -61,12 +65,37 @@ const ROUNDS: usize = 3;
 /// begins where no cusps exist, and below zero a tangent runs against the stroke's own sense. A curve without segments is
 /// empty.
 pub fn fit(curve: &Curve) -> Fitted {
-    let count = (SAMPLES * curve.segments() + SAMPLES).max(12);
+    let each = if curve.closed { RING_SAMPLES } else { SAMPLES };
+    let count = (each * curve.segments() + each).max(12);
     fit_with(curve, count, Along::Curve)
 }
 
 /// The same with `count` samples of the curvature over the whole curve, and a choice of what they lie on.
 pub fn fit_with(curve: &Curve, count: usize, along: Along) -> Fitted {
+    if !curve.closed || curve.segments() < 2 {
+        return searched(curve, count, along);
+    }
+    // Any keypoint of a ring may be the first: the search always begins at the same one.
+    let n = curve.segments();
+    let least = |a: &usize, b: &usize| {
+        let [a, b] = [a, b].map(|&i| curve.points[i].to_array());
+        let differ = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b));
+        differ.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+    };
+    let first = (0..n).min_by(least).unwrap_or(0);
+    let turned = |of: &[DVec3]| (0..=n).map(|i| of[(first + i) % n]).collect();
+    let begun = Curve {
+        points: turned(&curve.points),
+        tangents: turned(&curve.tangents),
+        closed: true,
+    };
+    let mut fitted = searched(&begun, count, along);
+    fitted.magnitudes.rotate_right(2 * first);
+    fitted.spline = super::spline(curve, &fitted.magnitudes);
+    fitted
+}
+
+fn searched(curve: &Curve, count: usize, along: Along) -> Fitted {
     let chords: Vec<f64> = curve
         .points
         .windows(2)
@@ -85,6 +114,7 @@ pub fn fit_with(curve: &Curve, count: usize, along: Along) -> Fitted {
         .map(|i| !is_straight(curve, i))
         .collect();
     let room = Room {
+        least: if curve.closed { RING_ROOM } else { ROOM.0 },
         chords: &chords,
         free: &free,
     };
@@ -167,6 +197,8 @@ fn is_straight(curve: &Curve, segment: usize) -> bool {
 
 /// What magnitudes may become.
 struct Room<'a> {
+    /// As a share of the chord.
+    least: f64,
     chords: &'a [f64],
     /// Segments whose magnitudes mean something.
     free: &'a [bool],
@@ -175,14 +207,14 @@ struct Room<'a> {
 impl Room<'_> {
     fn clamp(&self, i: usize, x: f64) -> f64 {
         let chord = self.chords[i / 2];
-        x.clamp(ROOM.0 * chord, ROOM.1 * chord)
+        x.clamp(self.least * chord, ROOM.1 * chord)
     }
 
     /// Whether a magnitude would leave its room downhill.
     fn holds(&self, i: usize, x: f64, gradient: f64) -> bool {
         let share = x / self.chords[i / 2];
         !self.free[i / 2]
-            || share <= ROOM.0 * (1.0 + 1e-9) && gradient > 0.0
+            || share <= self.least * (1.0 + 1e-9) && gradient > 0.0
             || share >= ROOM.1 * (1.0 - 1e-9) && gradient < 0.0
     }
 }

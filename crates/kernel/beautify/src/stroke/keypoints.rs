@@ -23,7 +23,7 @@ pub struct Keypoint {
 const ON: f64 = 1e-6;
 
 /// The keypoints within `reach` of the samples, in order, consecutive repeats dropped, and whether
-/// the stroke closes. Ends near none are keypoints of their own.
+/// the stroke closes. Ends near none are keypoints of their own; of a stroke that closes they are none ([`super::ring`]).
 pub(super) fn select(
     samples: &[DVec3],
     scaffold: &Scaffold,
@@ -85,26 +85,16 @@ pub(super) fn select(
         found[0].sample = 0;
     }
     let end = found.len() - 1;
-    let closed = found[0].point.distance(found[end].point) < reach && samples.len() > 8;
-    if closed {
-        let both = found[0].tangent + found[end].tangent;
-        let tangent = if found[0].along_line || !found[end].along_line && both.length() < 1e-3 {
-            found[0].tangent
-        } else if found[end].along_line {
-            found[end].tangent
-        } else {
-            both.normalize()
-        };
-        let first = found[0];
-        for (place, sample) in [(0, first.sample), (end, found[end].sample)] {
-            found[place] = Keypoint {
-                tangent,
-                sample,
-                ..first
-            };
-        }
-    }
+    // Ends on two keypoints go from one to the other, near as they may be; unless it came by both before.
+    let two = found[0].of_scaffold && found[end].of_scaffold && !repeats(&found);
+    let meets = !two && samples[0].distance(samples[last]) < reach;
+    let closed = (meets || found[0].point.distance(found[end].point) < reach) && samples.len() > 8;
     (found, closed)
+}
+
+/// Whether the last two are the first two again: it ran past where it began.
+pub(super) fn repeats(found: &[Keypoint]) -> bool {
+    matches!(found, [a, b, .., c, d] if a.point == c.point && b.point == d.point)
 }
 
 /// A point of the drawing itself.
@@ -128,7 +118,7 @@ fn tangent(samples: &[DVec3], at: usize) -> DVec3 {
 }
 
 /// The direction of the scaffold line through `point` that `drawn` follows, in the stroke's sense.
-fn along(point: DVec3, drawn: DVec3, scaffold: &Scaffold, angle: f64) -> Option<DVec3> {
+pub(super) fn along(point: DVec3, drawn: DVec3, scaffold: &Scaffold, angle: f64) -> Option<DVec3> {
     scaffold
         .lines
         .iter()

@@ -4,6 +4,9 @@ mod curvature;
 mod fit;
 mod keypoints;
 mod measure;
+mod ring;
+#[cfg(test)]
+mod ring_tests;
 mod straight;
 #[cfg(test)]
 mod tests;
@@ -101,7 +104,15 @@ pub fn fair_stroke(points: &[DVec3], scaffold: &Scaffold, options: &StrokeOption
             b: last.point,
         });
     }
-    let curve = through(&samples, keypoints, closed, reach);
+    let curve = if closed {
+        let ring = ring::Ring::new(&samples, spacing, reach);
+        let (ring, keypoints) = ring.select(keypoints, scaffold, options.angle);
+        let free = |sample: usize| ring.free(sample);
+        through(ring.samples(), keypoints, free, closed, reach)
+    } else {
+        let free = |sample: usize| keypoints::free(&samples, sample);
+        through(&samples, keypoints, free, closed, reach)
+    };
     Fair::Curve {
         spline: curve.0,
         keypoints: curve.1,
@@ -114,6 +125,7 @@ pub fn fair_stroke(points: &[DVec3], scaffold: &Scaffold, options: &StrokeOption
 fn through(
     samples: &[DVec3],
     mut keypoints: Vec<Keypoint>,
+    free: impl Fn(usize) -> Keypoint,
     closed: bool,
     reach: f64,
 ) -> (Spline, Vec<Keypoint>) {
@@ -145,7 +157,7 @@ fn through(
             }
             return (spline, keypoints);
         }
-        keypoints.insert(place, keypoints::free(samples, at));
+        keypoints.insert(place, free(at));
     }
     (Spline::default(), keypoints)
 }
