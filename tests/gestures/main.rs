@@ -35,6 +35,7 @@ mod room;
 mod scaffold;
 mod scaffold_faults;
 mod scaffold_flat;
+mod scaffold_last;
 mod scaffold_session;
 mod sequence;
 mod shapes;

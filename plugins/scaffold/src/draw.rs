@@ -17,6 +17,7 @@ use midair_studio::settings::{Draws, Settings};
 use crate::ghost;
 use crate::lift::lift;
 use crate::make;
+use crate::memory;
 use crate::phase::{Draft, Options, PIXELS, Phase, Sample};
 use crate::read::{self, Reading, Scene};
 
@@ -39,9 +40,13 @@ pub(crate) fn turn(
     mut project: ResMut<Project>,
     mut notices: ResMut<Notices>,
     mut commands: MessageWriter<Command>,
+    drawing: Res<Drawing>,
 ) {
     if project.is_changed() {
-        make::recognise(&project, &mut draft);
+        memory::follow(&project, &mut draft);
+        // A point of a line that is gone is none.
+        let there = |picked: DVec3| drawing.keypoints().any(|p| p == picked);
+        draft.picked = draft.picked.filter(|p| there(*p));
     }
     for side in Side::BOTH {
         let Some(cross) = hands.get(side).cross() else {

@@ -105,6 +105,7 @@ mod tests {
             places: Vec::new(),
             chosen: 0,
             age: 0.0,
+            gone: false,
         };
         last.lay_out();
         let mut draft = Draft {

@@ -13,6 +13,7 @@ mod ghost;
 mod history;
 mod lift;
 mod make;
+mod memory;
 mod panel;
 mod phase;
 pub mod read;

@@ -44,9 +44,10 @@ pub(crate) fn add(
         places: Vec::new(),
         chosen,
         age: 0.0,
+        gone: false,
     };
     last.lay_out();
-    draft.last = Some(last);
+    draft.remember(last);
     true
 }
 
@@ -105,25 +106,4 @@ pub(crate) fn as_it_stands(kind: &Kind, object: &Object) -> Kind {
         _ => {}
     }
     kind
-}
-
-/// After an undo, a move or anything else that changed what was drawn last: which reading it is now.
-pub(crate) fn recognise(project: &Project, draft: &mut Draft) {
-    let Some(last) = &mut draft.last else { return };
-    let Some(object) = project.document().object(last.id) else {
-        draft.last = None;
-        return;
-    };
-    if object.placement != Placement::IDENTITY {
-        // Moved away its readings are elsewhere.
-        draft.last = None;
-        return;
-    }
-    let is = |r: &Reading| as_it_stands(&r.kind, object) == object.kind;
-    // A length that was set is none of them: it stays what is spoken of.
-    let chosen = last.readings.iter().position(is);
-    if let Some(chosen) = chosen.filter(|c| *c != last.chosen) {
-        last.chosen = chosen;
-        last.lay_out();
-    }
 }

@@ -59,6 +59,8 @@ pub struct Last {
     pub chosen: usize,
     /// Seconds since it was drawn or looked at.
     pub age: f32,
+    /// It is not in the document: undone, or deleted.
+    pub gone: bool,
 }
 
 /// What a cancelled gesture throws away, and what outlives it for a while.
@@ -68,6 +70,8 @@ pub struct Draft {
     pub phase: Phase,
     /// What was drawn last.
     pub last: Option<Last>,
+    /// What was drawn before it, and what undo took away, in the order of drawing.
+    pub earlier: Vec<Last>,
     /// The ghost that a press would pick.
     pub over: Option<usize>,
     /// An angle at which lines are to meet others, in degrees, as it was asked for last; 0 for none.
