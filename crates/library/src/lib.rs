@@ -23,6 +23,7 @@ mod check;
 mod component;
 mod folders;
 mod import;
+mod keeper;
 mod library;
 mod listing;
 mod read;

@@ -4,10 +4,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use midair_field::MeshSource;
-use midair_field::bake::{BakeCache, BakeError, BakeOptions, Progress, Volume};
+use midair_field::bake::{BakeCache, BakeError, BakeOptions, Progress, Volume, bake};
 use midair_mesh::{MeshHash, TriMesh};
 
 use crate::folders::Folders;
+use crate::keeper::Keeper;
 use crate::shelf::MeshShelf;
 
 /// Bytes of volumes kept in memory unless said otherwise.
@@ -33,7 +34,7 @@ pub enum VolumeError {
 /// baked when they are asked for. Every method may be called from any thread; two that ask for one volume bake it
 /// once. Asking blocks until the volume is there, so it belongs off the frame.
 pub struct Volumes {
-    cache: BakeCache,
+    keeper: Keeper,
     limit: usize,
     find: Mutex<Vec<Arc<FindMesh>>>,
     state: Mutex<State>,
@@ -50,7 +51,6 @@ struct State {
     now: u64,
     baking: HashMap<Key, Progress>,
     failed: HashMap<MeshHash, VolumeError>,
-    warning: Option<String>,
 }
 
 struct Kept {
@@ -71,7 +71,7 @@ impl Volumes {
     /// lives on beyond the limit.
     pub fn with_cache(cache: BakeCache, limit: usize) -> Self {
         Self {
-            cache,
+            keeper: Keeper::new(cache),
             limit,
             find: Mutex::default(),
             state: Mutex::default(),
@@ -149,7 +149,12 @@ impl Volumes {
     /// One line saying why the disk last kept no volume, if so; each is given once. The volumes
     /// themselves are good, but will be baked again next time.
     pub fn take_warning(&self) -> Option<String> {
-        self.state().warning.take()
+        self.keeper.take_warning()
+    }
+
+    /// Waits until every volume baked so far is on disk, or could not be written. Dropping does as well.
+    pub fn finish_keeping(&self) {
+        self.keeper.finish();
     }
 
     /// These volumes for one evaluation: what it bakes reports to `progress` and ends when that is
@@ -192,17 +197,17 @@ impl Volumes {
         drop(state);
         // Takes the mark back however the bake ends, so that no one waits for ever.
         let mark = Mark { volumes: self, key };
-        let mut warning = None;
+        let options = BakeOptions::with_step(f32::from_bits(key.1));
+        let mut fresh = false;
         let baked = mesh().and_then(|mesh| {
-            let options = BakeOptions::with_step(f32::from_bits(key.1));
-            let baked = self.cache.get_or_bake(&mesh, key.0, &options, progress)?;
-            warning = baked.warning;
-            Ok(Arc::new(baked.volume))
+            if let Some(volume) = self.keeper.find(key.0, &options) {
+                progress.set_fraction(1.0);
+                return Ok(Arc::new(volume));
+            }
+            fresh = true;
+            Ok(Arc::new(bake(&mesh, &options, progress)?))
         });
         let mut state = self.state();
-        if warning.is_some() {
-            state.warning = warning;
-        }
         match &baked {
             Ok(volume) => state.keep(key, volume.clone(), self.limit),
             Err(VolumeError::Bake(BakeError::Cancelled)) => {}
@@ -210,6 +215,9 @@ impl Volumes {
         }
         drop(state);
         drop(mark);
+        if let (true, Ok(volume)) = (fresh, &baked) {
+            self.keeper.keep(key.0, options, volume.clone());
+        }
         baked
     }
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use common::home;
 use glam::Vec3;
 use midair_field::MeshSource as _;
-use midair_field::bake::{BakeCache, BakeError, Progress};
+use midair_field::bake::{BakeCache, BakeError, BakeOptions, Progress};
 use midair_library::{VolumeError, Volumes};
 use midair_mesh::{MeshHash, TriMesh};
 
@@ -93,6 +93,23 @@ fn what_is_on_disk_is_not_baked_again() {
 }
 
 #[test]
+fn many_are_kept_while_others_are_baked() {
+    let (_dir, folders) = home();
+    let volumes = Volumes::new(&folders);
+    let steps: Vec<f32> = (0..12).map(|i| 0.01 + 0.001 * i as f32).collect();
+    let mesh = tetrahedron(0.4);
+    for step in &steps {
+        volumes.bake(&mesh, *step, &Progress::new()).unwrap();
+    }
+    drop(volumes);
+    let cache = BakeCache::new(folders.bakes());
+    for step in steps {
+        let options = BakeOptions::with_step(step);
+        assert!(cache.find(mesh.hash(), &options).is_some(), "{step}");
+    }
+}
+
+#[test]
 fn what_cannot_be_had_says_why() {
     let (_dir, folders) = home();
     let volumes = Volumes::new(&folders);
@@ -142,6 +159,7 @@ fn a_disk_that_keeps_no_volume_is_told_of_once() {
     volumes
         .bake(&tetrahedron(0.4), 0.01, &Progress::new())
         .unwrap();
+    volumes.finish_keeping();
     let line = volumes.take_warning().unwrap();
     assert!(line.contains("taken"), "{line}");
     assert!(volumes.take_warning().is_none());

@@ -336,9 +336,7 @@ fn deliver(
         notices.warn(line);
     }
     // What was baked and could not be kept is baked again in each run.
-    if evaluations.running.iter().any(Running::is_finished)
-        && let Some(line) = evaluations.volumes.take_warning()
-    {
+    if let Some(line) = evaluations.volumes.take_warning() {
         notices.warn(line);
     }
     evaluations.take_in(&delivery, &mut delivered.0, &mut notices);

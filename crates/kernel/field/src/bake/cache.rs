@@ -1,9 +1,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use midair_mesh::{MeshHash, TriMesh};
+use midair_mesh::MeshHash;
 
-use super::{BakeError, BakeOptions, Progress, Volume, bake, store};
+use super::{BakeOptions, Volume, store};
 
 /// Volumes kept in a folder, a file for each mesh, step and padding.
 ///
@@ -12,17 +12,6 @@ use super::{BakeError, BakeOptions, Progress, Volume, bake, store};
 #[derive(Clone, Debug)]
 pub struct BakeCache {
     folder: PathBuf,
-}
-
-/// What [`BakeCache::get_or_bake`] gives.
-#[derive(Clone, Debug)]
-pub struct Baked {
-    /// The volume asked for.
-    pub volume: Volume,
-    /// Whether it was found in the folder.
-    pub found: bool,
-    /// One line saying why it could not be kept for the next time.
-    pub warning: Option<String>,
 }
 
 impl BakeCache {
@@ -38,39 +27,28 @@ impl BakeCache {
         &self.folder
     }
 
-    /// The volume of `mesh`, whose [`TriMesh::hash`] is `hash`: read where it was kept before,
-    /// else baked and kept.
+    /// The volume of the mesh of that name, where it was kept before.
+    pub fn find(&self, mesh: MeshHash, options: &BakeOptions) -> Option<Volume> {
+        let bytes = std::fs::read(self.path(mesh, options)).ok()?;
+        Volume::from_bytes(&bytes)
+    }
+
+    /// Keeps the volume of the mesh of that name for the next time.
     ///
     /// # Errors
-    /// As [`bake`]; never because of the folder.
-    pub fn get_or_bake(
+    /// One line that says why it could not be kept.
+    pub fn keep(
         &self,
-        mesh: &TriMesh,
-        hash: MeshHash,
+        mesh: MeshHash,
         options: &BakeOptions,
-        progress: &Progress,
-    ) -> Result<Baked, BakeError> {
-        let path = self.path(hash, options);
-        let kept = std::fs::read(&path).ok();
-        if let Some(volume) = kept.and_then(|bytes| Volume::from_bytes(&bytes)) {
-            progress.set_fraction(1.0);
-            return Ok(Baked {
-                volume,
-                found: true,
-                warning: None,
-            });
-        }
-        let volume = bake(mesh, options, progress)?;
-        let warning = self.keep(&path, &volume).err().map(|e| {
+        volume: &Volume,
+    ) -> Result<(), String> {
+        let path = self.path(mesh, options);
+        self.write(&path, volume).map_err(|e| {
             format!(
                 "{}: the baked mesh could not be kept and will be baked again next time: {e}",
                 path.display()
             )
-        });
-        Ok(Baked {
-            volume,
-            found: false,
-            warning,
         })
     }
 
@@ -83,7 +61,7 @@ impl BakeCache {
     }
 
     /// Written beside its place and then renamed, so that no reader sees half a file.
-    fn keep(&self, path: &Path, volume: &Volume) -> std::io::Result<()> {
+    fn write(&self, path: &Path, volume: &Volume) -> std::io::Result<()> {
         std::fs::create_dir_all(&self.folder)?;
         let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
         file.write_all(&volume.to_bytes())?;

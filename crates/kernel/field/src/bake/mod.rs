@@ -24,7 +24,7 @@ mod volume;
 mod wave;
 mod work;
 
-pub use cache::{BakeCache, Baked};
+pub use cache::BakeCache;
 pub use options::{BakeError, BakeOptions, LONGEST_SIDE, PADDING, STEP};
 pub use progress::Progress;
 pub use volume::Volume;

@@ -1,4 +1,6 @@
 use super::shapes::ball;
+use midair_mesh::MeshHash;
+
 use super::*;
 
 #[test]
@@ -32,26 +34,22 @@ fn a_forged_file_is_refused() {
 fn the_cache_keeps_and_mends() {
     let folder = tempfile::tempdir().unwrap();
     let cache = BakeCache::new(folder.path().join("baked"));
-    let mesh = ball(0.2, 24, 12);
-    let get = |step| {
-        let options = BakeOptions::with_step(step);
-        cache
-            .get_or_bake(&mesh, mesh.hash(), &options, &Progress::new())
-            .unwrap()
-    };
-    let first = get(0.02);
-    assert!(!first.found && first.warning.is_none());
-    let again = get(0.02);
-    assert!(again.found && again.volume == first.volume);
-    assert!(!get(0.03).found);
+    let volume = baked(&ball(0.2, 24, 12));
+    let (name, other) = (MeshHash([1; 32]), MeshHash([2; 32]));
+    let options = BakeOptions::with_step(0.02);
+    assert!(cache.find(name, &options).is_none());
+    cache.keep(name, &options, &volume).unwrap();
+    assert!(cache.find(name, &options) == Some(volume.clone()));
+    assert!(cache.find(other, &options).is_none());
+    assert!(cache.find(name, &BakeOptions::with_step(0.03)).is_none());
     for entry in std::fs::read_dir(cache.folder()).unwrap() {
         let path = entry.unwrap().path();
         let bytes = std::fs::read(&path).unwrap();
         std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     }
-    let mended = get(0.02);
-    assert!(!mended.found && mended.volume == first.volume);
-    assert!(get(0.02).found);
+    assert!(cache.find(name, &options).is_none());
+    cache.keep(name, &options, &volume).unwrap();
+    assert!(cache.find(name, &options) == Some(volume));
 }
 
 #[test]
@@ -59,13 +57,11 @@ fn a_folder_that_cannot_be_written_costs_only_the_keeping() {
     let folder = tempfile::tempdir().unwrap();
     let in_the_way = folder.path().join("baked");
     std::fs::write(&in_the_way, "a file").unwrap();
-    let mesh = ball(0.2, 24, 12);
-    let options = BakeOptions::with_step(0.02);
     let cache = BakeCache::new(&in_the_way);
-    let baked = cache
-        .get_or_bake(&mesh, mesh.hash(), &options, &Progress::new())
-        .unwrap();
-    let warning = baked.warning.unwrap();
+    let options = BakeOptions::with_step(0.02);
+    let warning = cache
+        .keep(MeshHash([1; 32]), &options, &baked(&ball(0.2, 24, 12)))
+        .unwrap_err();
     assert!(
         warning.contains("baked") && !warning.contains('\n'),
         "{warning}"
