@@ -26,13 +26,13 @@ impl Desk {
         self.wait(3);
     }
 
-    /// How wide the column of panels at the left is, in points.
-    fn left_column(&mut self) -> f32 {
+    /// How wide the column of panels at the right is, in points.
+    fn right_column(&mut self) -> f32 {
         let world = self.app.world_mut();
         let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
         let mut context = contexts.single_mut(world).unwrap();
-        let state = PanelState::load(context.get_mut(), Id::new("left"));
-        state.expect("a column at the left").outer_rect.width()
+        let state = PanelState::load(context.get_mut(), Id::new("right"));
+        state.expect("a column at the right").outer_rect.width()
     }
 
     fn was_told(&self, words: &str) -> bool {
@@ -74,15 +74,15 @@ fn the_panel_of_brush_stays_as_wide_as_it_is() {
     desk.says(Command::Mode(BRUSH));
     desk.glide(Vec2::new(800.0, 400.0));
     desk.wait(30);
-    let before = desk.left_column();
+    let before = desk.right_column();
     for skeleton in BrushSkeleton::ALL {
         desk.says(Settings::command("brush.skeleton", skeleton));
         desk.wait(60);
         // A number that is wider than any before may take some points, once.
-        let now = desk.left_column();
+        let now = desk.right_column();
         assert!((now - before).abs() < 10.0, "{skeleton:?}: {before}, {now}");
         desk.wait(60);
-        assert_eq!(desk.left_column(), now, "{skeleton:?}");
+        assert_eq!(desk.right_column(), now, "{skeleton:?}");
     }
 }
 

@@ -97,7 +97,7 @@ pub(crate) fn take(carried: On<Carried>, mut studio: Studio) {
         }
         let size = recipe.bounds().size() * object.placement.scale.abs();
         studio.notices.info(format!(
-            "{} is the volume brush now: the trigger paints it.",
+            "{} is the volume brush now: paint with it.",
             object.name
         ));
         studio.easel.carried = Some((object.name, recipe));

@@ -55,7 +55,7 @@ impl Plugin for BrushPlugin {
                 id: "brush",
                 title: "Brush",
                 icon: icon::PAINT_BRUSH,
-                dock: Dock::Left,
+                dock: Dock::Right,
                 order: 5,
                 open: false,
                 in_bar: true,

@@ -424,7 +424,7 @@ impl BrushPanel {
             self.weight = None;
             asks.push(Ask::Weight(at, weight).command());
         }
-        ui.weak("In the view: drag it with the trigger, ↑ ↓ resize it.");
+        ui.weak("In the view: drag it, ↑ ↓ resize it.");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use midair_studio::{
-    hands::Action,
+    hands::{Action, Side},
     project::Project,
     tools::{HintKey, Hints},
 };
@@ -103,6 +103,17 @@ pub(crate) fn with_keys(
     };
     let more = more.into_iter().map(|(key, does)| (key, does.to_owned()));
     let mut more: Vec<_> = more.collect();
+    let other = pointer.leading.other();
+    let left_holding = pointer.is_latched(other) && !pointer.holds();
+    if left_holding && !in_panels && !pad.leads() {
+        // No button is down that could be let go.
+        let hand = match other {
+            Side::Left => "left",
+            Side::Right => "right",
+        };
+        hints.status = format!("The {hand} hand holds it");
+        more.insert(0, (named(Control::SwapHands), "let go of it".to_owned()));
+    }
     // What ends what one is at comes first; then what the thing under the pointer is marked by.
     let empty = world.resource::<Project>().document().is_empty();
     hints.buttons.sort_by_key(|h| match h.action {

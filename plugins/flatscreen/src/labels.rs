@@ -130,9 +130,6 @@ fn begins(
     named: impl Fn(Action) -> String,
 ) -> (String, &'static str) {
     const DROP: &str = "or drop a mesh or a document here";
-    if library {
-        return ("Pick a shape to begin".to_owned(), DROP);
-    }
     let first = hints.buttons.first();
     let draws = first.filter(|h| h.action == HintKey::Action(Action::Act));
     if let (Some(hint), Some(tool)) = (draws, tools.active()) {
@@ -145,6 +142,9 @@ fn begins(
         let mut letters = text.chars();
         let first = letters.next().into_iter().flat_map(char::to_uppercase);
         return (first.chain(letters).collect(), tool.about);
+    }
+    if library {
+        return ("Pick a shape to begin".to_owned(), DROP);
     }
     let key = named(Action::Library);
     (format!("Press {key} for the library"), DROP)
@@ -289,6 +289,9 @@ mod tests {
         let (first, _) = begins(&hints, tools, false, |_| "RT".to_owned());
         assert_eq!(first, "RT: draw a line");
         let (first, _) = begins(&hints, tools, true, named);
-        assert_eq!(first, "Pick a shape to begin");
+        assert_eq!(
+            first, "Left button: draw a line",
+            "the library is no beginning there"
+        );
     }
 }

@@ -7,6 +7,7 @@
 
 mod band;
 pub mod bindings;
+mod column;
 mod controls_panel;
 mod exact;
 pub mod focus;

@@ -14,6 +14,7 @@ use midair_studio::{
 };
 
 use crate::bindings::{Controls, Cursor};
+use crate::column::column;
 use crate::focus::{Focus, Map};
 use crate::gamepad::Pad;
 use crate::hints;
@@ -308,7 +309,7 @@ fn close(info: &PanelInfo) -> Command {
 }
 
 /// What a panel is for, and what closes it.
-fn heading(ui: &mut egui::Ui, info: &PanelInfo, asks: &mut Vec<Command>) {
+pub(crate) fn heading(ui: &mut egui::Ui, info: &PanelInfo, asks: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.heading(format!("{}  {}", info.icon, info.title));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -319,42 +320,7 @@ fn heading(ui: &mut egui::Ui, info: &PanelInfo, asks: &mut Vec<Command>) {
     });
 }
 
-/// The panels of one side, one above the other.
-fn column(
-    root: &mut egui::Ui,
-    side: egui::Panel,
-    open: &[PanelInfo],
-    world: &World,
-    panels: &mut Panels,
-    map: &mut Map,
-    asks: &mut Vec<Command>,
-) {
-    side.resizable(true)
-        .size_range(200.0..=480.0)
-        .show(root, |ui| {
-            map.begin();
-            // Each gets the same height, its heading and the line above it with it.
-            let (top, share) = (ui.cursor().top(), ui.available_height() / open.len() as f32);
-            for (i, info) in open.iter().enumerate() {
-                if i > 0 {
-                    ui.separator();
-                }
-                ui.set_opacity(panel::kit::appeared(ui, egui::Id::new(info.id)));
-                ui.add_space(8.0);
-                heading(ui, info, asks);
-                ui.push_id(info.id, |ui| {
-                    let bottom = top + (i + 1) as f32 * share;
-                    ui.set_max_height(
-                        (bottom - ui.cursor().top() - ui.spacing().item_spacing.y).max(80.0),
-                    );
-                    fill(ui, info, world, panels, asks);
-                });
-                map.end(info.id, true);
-            }
-        });
-}
-
-fn fill(
+pub(crate) fn fill(
     ui: &mut egui::Ui,
     info: &PanelInfo,
     world: &World,

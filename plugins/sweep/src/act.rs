@@ -10,7 +10,7 @@ use midair_studio::{
     notice::Notices,
     pick::Touch,
     project::{Project, Selection, Shelf},
-    settings::{Settings, SweepHands},
+    settings::{Settings, SweepHands, SweepShape},
 };
 use midair_swept::{MAX_RIBS, Rib, smoothed};
 
@@ -132,7 +132,7 @@ pub(crate) fn ends(
     if let Some(side) = hands.pressed(Action::Finish)
         && !reserved.has(side, Action::Finish)
     {
-        let done = finish(draft, &project, &selection, &mut notices);
+        let done = finish(draft, &settings, &project, &selection, &mut notices);
         hands.pulse(side, if done { Haptic::Tick } else { Haptic::Refused });
     }
     if !draft.is_sweeping() {
@@ -373,9 +373,18 @@ fn cancel(draft: &mut Draft) {
     }
 }
 
-/// Takes up a sweep to edit its curves, or puts it down.
+/// Whether a row of clones hangs between the ends that can be kept where it does: one hand alone has to draw no way
+/// for it.
+pub(crate) fn hangs(draft: &Draft, settings: &Settings) -> bool {
+    let row = settings.sweep.shape == SweepShape::Clones && !settings.sweep.spread;
+    let ready = draft.alone && matches!(draft.solo, Solo::Ready { .. }) && draft.live.is_some();
+    row && ready && draft.phase == Phase::Idle && draft.extends.is_none()
+}
+
+/// Takes up a sweep to edit its curves, or puts it down; or keeps the row of clones that hangs there.
 fn finish(
     draft: &mut Draft,
+    settings: &Settings,
     project: &Project,
     selection: &Selection,
     notices: &mut Notices,
@@ -394,6 +403,17 @@ fn finish(
                 at: 0,
                 grip: None,
             };
+            true
+        }
+        None if hangs(draft, settings) => {
+            let there = |kept: Rib| draft.live.is_some_and(|l| kept.apart(&l, 16) < 1e-3);
+            if draft.kept.is_some_and(there) {
+                notices.info("The row stands there already. Carry the curve on, or place its ends anew, for another.");
+                return false;
+            }
+            begin(draft);
+            draft.kept = draft.live;
+            draft.done = true;
             true
         }
         None => {

@@ -53,6 +53,8 @@ pub enum SweepAsk {
     Free,
     /// The row of clones becomes so many objects, each on its own.
     Apart,
+    /// So many clones in the selected row, along each of its curves.
+    Clones(u32),
     /// w₀ and w₁.
     Slopes(f32, f32),
 }
@@ -92,6 +94,7 @@ pub(crate) fn ask(
             // The document changes under the hands: what they are in the middle of is given up.
             Command::Undo | Command::Redo | Command::New | Command::Open(_) | Command::Restore => {
                 draft.drop_sweep();
+                draft.kept = None;
                 if let Phase::Editing { grip, .. } = &mut draft.phase {
                     *grip = None;
                 }
@@ -101,6 +104,9 @@ pub(crate) fn ask(
         };
         match ron::from_str::<SweepAsk>(ask) {
             Ok(SweepAsk::Apart) => free::apart(&mut project, &mut selection, &mut notices),
+            Ok(SweepAsk::Clones(count)) => {
+                edit::recount(&mut project, &selection, &mut notices, count);
+            }
             Ok(ask) => carry_out(ask, &selection, &mut project, &mut draft, &mut notices),
             Err(_) => notices.warn(format!("Sweep does not understand \"{ask}\".")),
         }
@@ -199,6 +205,7 @@ fn carry_out(
         | SweepAsk::Pin { .. }
         | SweepAsk::Slopes(..)
         | SweepAsk::Free
+        | SweepAsk::Clones(_)
         | SweepAsk::Apart => return,
     };
     edit::replace(project, notices, id, step, next);

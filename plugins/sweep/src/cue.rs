@@ -12,7 +12,7 @@ use midair_studio::{
 };
 use midair_swept::Rib;
 
-use crate::act::target;
+use crate::act::{hangs, target};
 use crate::edit;
 use crate::phase::{Draft, Phase};
 use crate::solo::Solo;
@@ -159,7 +159,10 @@ pub(crate) fn hints(
     mut hints: ResMut<Hints>,
 ) {
     let mut next = Hints::default();
-    let shape = settings.sweep.shape.name();
+    let shape = match settings.sweep.shape {
+        SweepShape::Clones => "row of clones",
+        other => other.name(),
+    };
     match &draft.phase {
         Phase::Sweeping { .. } => {
             next.begin(format!("Sweeping a {shape}: {} curves", draft.ribs.len()))
@@ -227,6 +230,8 @@ pub(crate) fn hints(
             } else if target(&project, &selection).is_some() {
                 next.say(Action::Down, "smooth")
                     .say(Action::Finish, "take up its curves");
+            } else if hangs(&draft, &settings) {
+                next.say(Action::Finish, "keep the row as it hangs");
             }
         }
     }

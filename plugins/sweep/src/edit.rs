@@ -6,18 +6,19 @@ use bevy::math::Affine3A;
 use bevy::prelude::*;
 use midair_curve::{End, Lengths};
 use midair_document::{Edit, Kind, Object, ObjectId};
-use midair_field::{Node, Placement, Recipe, Sweep};
+use midair_field::{Node, Placement, Recipe, Row, Sweep};
 use midair_studio::{
     hands::{Action, Hands, Haptic, Side},
     notice::Notices,
-    project::Project,
+    project::{Project, Selection},
 };
 use midair_swept::{Rib, bent, cut, smoothed};
 
 use crate::act::ALPHA;
 use crate::ends::pose;
+use crate::free;
 use crate::phase::{Draft, Grip, Held, Phase};
-use crate::write::kind_of;
+use crate::write::{kind_of, said};
 
 /// A sweep's curves and where it stands.
 pub(crate) fn curves(project: &Project, object: ObjectId) -> Option<(Sweep, Placement)> {
@@ -56,6 +57,36 @@ pub(crate) fn smooth(
     };
     let ribs = smoothed(&sweep.ribs, ALPHA, times);
     replace(project, notices, id, "Smooth", Sweep { ribs, ..sweep })
+}
+
+/// The selected row of clones has more or fewer of them, along the same curves.
+pub(crate) fn recount(
+    project: &mut Project,
+    selection: &Selection,
+    notices: &mut Notices,
+    count: u32,
+) {
+    let document = project.document();
+    let found = selection.0.iter().find_map(|&id| {
+        let object = document.object(id)?;
+        Some((id, object, free::row(object)?))
+    });
+    let Some((id, object, (row, recipe))) = found else {
+        notices.info("Select a row of clones first.");
+        return;
+    };
+    let row = Row {
+        count: count.max(1),
+        ..row.clone()
+    };
+    if let Err(fault) = row.validate() {
+        notices.warn(said(&fault));
+        return;
+    }
+    let recipe = recipe.clone();
+    let step = format!("Clones of {}", object.name);
+    let kind = Kind::Solid(Recipe::new(Node::Clones { row, recipe }));
+    project.commit(step, [Edit::SetKind { id, kind }], notices);
 }
 
 /// One sweep becomes two that meet at a curve.

@@ -105,11 +105,16 @@ impl SweepPanel {
         let found = target(project, selection);
         let clones = selection.0.iter().find_map(|&id| {
             let object = project.document().object(id)?;
-            Some((object, free::row(object)?.0.len()))
+            let (row, _) = free::row(object)?;
+            Some((object, row.len(), row.count))
         });
-        if let (None, Some((object, count))) = (found, clones) {
+        if let (None, Some((object, count, each))) = (found, clones) {
             ui.label(kit::strong(&object.name));
             ui.weak(format!("{count} clones"));
+            let mut next = each;
+            if self.number(ui, "How many of it", &mut next, 1.0..=256.0, 0, "") && next != each {
+                asks.push(SweepAsk::Clones(next).command());
+            }
             follows(ui, project, object, asks);
             let few = count <= free::MOST;
             let does = "Each becomes an object on its own";

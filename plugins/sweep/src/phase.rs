@@ -92,6 +92,8 @@ pub struct Draft {
     pub(crate) swipes: [Option<f32>; 2],
     /// It is to be made a sweep in this frame.
     pub(crate) done: bool,
+    /// The curve along which finish kept a row.
+    pub(crate) kept: Option<Rib>,
     /// What the one hand touched when it was pressed.
     pub(crate) under: Option<ObjectId>,
     /// The act that is down began a sweep or a bend, and is not to begin another.
@@ -116,6 +118,7 @@ impl Default for Draft {
             springs: [Spring::default(); 2],
             swipes: [None; 2],
             done: false,
+            kept: None,
             under: None,
             fresh: true,
         }

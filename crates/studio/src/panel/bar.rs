@@ -64,9 +64,11 @@ pub fn bar(ui: &mut Ui, state: &mut Bar, world: &World, panels: &Panels) -> Vec<
             let button = ui
                 .selectable_label(active, tool.name)
                 .on_hover_text(tool.about);
-            let dropped = !held.is_empty()
-                && button.contains_pointer()
-                && ui.input(|i| i.pointer.any_released());
+            let over = !held.is_empty() && button.contains_pointer();
+            if over {
+                button.show_tooltip_text(format!("Let go: carried into {}", tool.name));
+            }
+            let dropped = over && ui.input(|i| i.pointer.any_released());
             if dropped {
                 asks.push(Command::Carry {
                     objects: in_hands(held),

@@ -117,6 +117,8 @@ impl Panel for LibraryPanel {
             let width = ui.available_width() - 2.0 * button - 2.0;
             kit::search(ui, &mut self.query, "Search", width);
             let import = ui.button(icon::DOWNLOAD_SIMPLE);
+            let named = |on, name| egui::WidgetInfo::labeled(egui::WidgetType::Button, on, name);
+            import.widget_info(|| named(true, "Import"));
             if import
                 .on_hover_text("Bring in meshes of your own: GLB, OBJ, STL, PLY")
                 .clicked()
@@ -125,6 +127,7 @@ impl Panel for LibraryPanel {
             }
             let chosen = !world.resource::<Selection>().0.is_empty();
             let keep = ui.add_enabled(chosen, egui::Button::new(icon::STACK_PLUS));
+            keep.widget_info(|| named(chosen, "Keep"));
             if keep
                 .on_hover_text("Keep what is selected in the library, as components of your own")
                 .clicked()
