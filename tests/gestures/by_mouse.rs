@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 use midair_brush::BRUSH;
+use midair_document::Edit;
 use midair_field::Node;
 use midair_studio::command::Command;
 use midair_studio::hands::Side;
@@ -15,8 +16,11 @@ use crate::desk::Desk;
 impl Desk {
     /// The middle of a button, in pixels of the window.
     fn place_of(&mut self, button: &str) -> Vec2 {
-        let seen = self.button_called(button);
-        let at = seen.expect("it is to be seen").rect.center();
+        let Some(seen) = self.button_called(button) else {
+            let all: Vec<_> = self.screen().into_iter().map(|s| s.text).collect();
+            panic!("{button} is not to be seen: {all:?}");
+        };
+        let at = seen.rect.center();
         Vec2::new(at.x, at.y)
     }
 
@@ -82,7 +86,11 @@ fn what_is_kept_in_the_library_is_placed_again() {
     let cube = desk.thing("solid/cube");
     desk.hover(cube);
     desk.click();
-    let name = desk.document().object(cube).unwrap().name.clone();
+    let name = "Brick".to_owned();
+    desk.tells(Command::Edit(Edit::Rename {
+        id: cube,
+        name: name.clone(),
+    }));
     for (button, things) in [("Keep", 1), (name.as_str(), 2)] {
         let at = desk.place_of(button);
         desk.glide(at);
@@ -90,10 +98,28 @@ fn what_is_kept_in_the_library_is_placed_again() {
         desk.settle();
         assert_eq!(desk.document().len(), things, "{:?}", desk.warnings());
     }
-    let shelf = desk.world().resource::<midair_studio::project::Shelf>();
-    let mut categories = shelf.library.categories();
-    let own = categories.find(|(title, _)| *title == midair_library::OWN);
-    assert_eq!(own.map(|(_, all)| all.len()), Some(1));
+    let own = |desk: &Desk| {
+        let shelf = desk.world().resource::<midair_studio::project::Shelf>();
+        let mut categories = shelf.library.categories();
+        let own = categories.find(|(title, _)| *title == midair_library::OWN);
+        own.map_or(0, |(_, all)| all.len())
+    };
+    assert_eq!(own(&desk), 1);
+    // And taken out again; what was placed stays, and so does the file.
+    let at = desk.place_of(&name);
+    desk.glide(at);
+    for down in [true, false] {
+        desk.mouse(MouseButton::Right, down);
+        desk.wait(4);
+    }
+    let out = desk.place_of("Take it out of the library");
+    desk.glide(out);
+    desk.click();
+    desk.settle();
+    assert_eq!((own(&desk), desk.document().len()), (0, 2));
+    let folder = desk.world().resource::<midair_studio::project::Places>();
+    let mut files = std::fs::read_dir(folder.library.components()).unwrap();
+    assert!(files.all(|f| f.unwrap().path().extension().is_some_and(|e| e == "away")));
 }
 
 #[test]

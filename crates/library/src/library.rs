@@ -1,11 +1,12 @@
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, DirEntry, include_dir};
 
 use crate::component::{Component, Source, category_rank};
 use crate::folders::Folders;
 use crate::read::{Warning, parse, read_folder};
+use crate::save::SaveError;
 use crate::shelf::MeshShelf;
 
 static BUNDLED: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets/components");
@@ -76,6 +77,26 @@ impl Library {
         self.components.retain(|c| c.id != component.id);
         self.components.push(component);
         self.sort();
+    }
+
+    /// Takes a component of the user's own off the shelf; its file is kept beside the others as `*.ron.away`, and no
+    /// longer read. Gives that file, or `None` where the component is not the user's own.
+    ///
+    /// # Errors
+    /// The file cannot be renamed; the component is then on the shelf as before.
+    pub fn take_away(&mut self, id: &str) -> Result<Option<PathBuf>, SaveError> {
+        let Some(Source::User(path)) = self.get(id).map(|c| &c.source) else {
+            return Ok(None);
+        };
+        let (path, away) = (path.clone(), path.with_extension("ron.away"));
+        match std::fs::rename(&path, &away) {
+            Err(reason) if reason.kind() != std::io::ErrorKind::NotFound => {
+                return Err(SaveError::Unwritable { path, reason });
+            }
+            _ => {}
+        }
+        self.components.retain(|c| c.id != id);
+        Ok(Some(away))
     }
 
     fn add_dir(&mut self, dir: &Dir<'static>) {

@@ -197,6 +197,20 @@ fn handle(
                     errands.start(keep, &project);
                 }
             }
+            Command::TakeAway { component } => {
+                let name = shelf.library.get(component).map(|c| c.name.clone());
+                match shelf.library.take_away(component) {
+                    Ok(Some(file)) => notices.info(format!(
+                        "{} is out of the library. Its file is kept as {}; what was made of it stays.",
+                        name.unwrap_or_default(),
+                        file.display()
+                    )),
+                    Ok(None) => notices.warn(format!(
+                        "\"{component}\" is no component of your own: only those can be taken out of the library."
+                    )),
+                    Err(error) => notices.warn(format!("It stays in the library: {error}.")),
+                }
+            }
             Command::Bring { paths, at } => {
                 // What was dropped by the handful is meant for the library.
                 let at = (paths.len() <= MOST_PLACED && at.is_finite()).then_some(*at);

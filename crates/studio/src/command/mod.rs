@@ -93,6 +93,11 @@ pub enum Command {
         #[serde(default)]
         objects: Vec<ObjectId>,
     },
+    /// Takes a component of the user's own out of the library; its file is kept aside.
+    TakeAway {
+        /// Its id in the library.
+        component: String,
+    },
     /// Brings meshes into the user's library and, where they are few, into the scene as well.
     Bring {
         /// The files.

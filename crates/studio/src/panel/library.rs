@@ -6,7 +6,7 @@ use bevy_egui::egui::{
     TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use midair_field::RecipeHash;
-use midair_library::{Component, OWN};
+use midair_library::{Component, OWN, Source};
 
 use super::{ACCENT, Panel, icon, kit};
 use crate::bounded::Bounded;
@@ -464,6 +464,15 @@ impl LibraryPanel {
                     "shelf.favourites",
                     settings.shelf.toggled(&component.id),
                 ));
+                ui.close();
+            }
+            let own = matches!(component.source, Source::User(_));
+            let button =
+                || egui::Button::new(format!("{}  Take it out of the library", icon::TRASH));
+            if own && ui.add(button()).clicked() {
+                asks.push(Command::TakeAway {
+                    component: component.id.clone(),
+                });
                 ui.close();
             }
         });
