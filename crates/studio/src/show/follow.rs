@@ -80,6 +80,12 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<ObjectMap>()
         .init_resource::<Drawn>()
         .init_resource::<Arriving>()
+        .init_resource::<super::halo::HaloLook>()
+        // Not in the midst of what follows the document: that would have to wait for what it spawns.
+        .add_systems(
+            Update,
+            (super::halo::halos, super::halo::dress).after(StudioSet::Cue),
+        )
         .add_systems(
             Update,
             (spawn, place, show, super::ink::draw)

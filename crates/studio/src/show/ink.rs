@@ -25,7 +25,14 @@ const SIDES: usize = 10;
 
 /// What of a drawing an entity shows, and at which size.
 #[derive(Component, Default)]
-pub(super) struct Inked(Option<(Kind, i32)>);
+pub(super) struct Inked(pub(super) Option<(Kind, i32)>);
+
+impl Inked {
+    /// What it shows.
+    pub(super) fn kind(&self) -> Option<&Kind> {
+        self.0.as_ref().map(|(kind, _)| kind)
+    }
+}
 
 /// By what lines are seen: how the world is scaled, and on a screen from where.
 #[derive(Clone, Copy, Debug, PartialEq)]

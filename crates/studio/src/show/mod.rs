@@ -6,6 +6,7 @@ mod ease;
 mod follow;
 mod form;
 mod guides;
+mod halo;
 mod ink;
 mod material;
 mod readout;
