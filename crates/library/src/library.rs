@@ -79,8 +79,8 @@ impl Library {
         self.sort();
     }
 
-    /// Takes a component of the user's own off the shelf; its file is kept beside the others as `*.ron.away`, and no
-    /// longer read. Gives that file, or `None` where the component is not the user's own.
+    /// Takes a component of the user's own off the shelf; its file is kept beside the others as `*.ron.away`, with a
+    /// number where there is one, and no longer read. Gives that file, or `None` where the component is not the user's own.
     ///
     /// # Errors
     /// The file cannot be renamed; the component is then on the shelf as before.
@@ -88,7 +88,14 @@ impl Library {
         let Some(Source::User(path)) = self.get(id).map(|c| &c.source) else {
             return Ok(None);
         };
-        let (path, away) = (path.clone(), path.with_extension("ron.away"));
+        let path = path.clone();
+        // One of the same name may have been taken away before.
+        let named = |n: u32| match n {
+            1 => path.with_extension("ron.away"),
+            n => path.with_extension(format!("ron.away{n}")),
+        };
+        let free = (1..).map(named).find(|p| !p.exists());
+        let away = free.unwrap_or_else(|| named(1));
         match std::fs::rename(&path, &away) {
             Err(reason) if reason.kind() != std::io::ErrorKind::NotFound => {
                 return Err(SaveError::Unwritable { path, reason });

@@ -39,6 +39,28 @@ fn own_components_stand_beside_the_bundled_ones() {
 }
 
 #[test]
+fn what_is_taken_away_is_kept_however_often() {
+    let (_dir, folders) = home();
+    let mut kept = Vec::new();
+    for radius in ["0.1", "0.2", "0.3"] {
+        let text = BALL.replace("0.1", radius);
+        put(&folders, "ball.ron", &text);
+        let mut library = Library::load(&folders);
+        let away = library.take_away("own/ball").unwrap().unwrap();
+        assert!(library.get("own/ball").is_none());
+        assert!(Library::load(&folders).get("own/ball").is_none());
+        kept.push((away, text));
+    }
+    for (away, text) in kept {
+        assert_eq!(fs::read_to_string(away).unwrap(), text);
+    }
+    let mut library = Library::load(&folders);
+    assert!(library.warnings().is_empty());
+    assert_eq!(library.take_away("solid/cube").unwrap(), None);
+    assert!(library.get("solid/cube").is_some());
+}
+
+#[test]
 fn each_broken_file_costs_one_line_and_hides_nothing() {
     let broken: &[(&str, &[u8], usize, &str)] = &[
         ("a-empty.ron", b"", 1, ""),
