@@ -64,7 +64,7 @@ pub fn materials(folder: &Path) -> Result<()> {
     paint(&mut wand, &folder.join("painting.png"))?;
     wand.scrolled(BRUSH, "Radius", "Jelly")?;
     wand.click(BRUSH, "Jelly")?;
-    towards(&mut wand, 0.5, &folder.join("brush-panel.png"))?;
+    towards(&mut wand, -0.5, &folder.join("brush-panel.png"))?;
     let jelly = twice(&mut wand, folder, "jelly")?;
 
     // A solid, selected where solids are put together, and its panel.
