@@ -66,12 +66,8 @@ pub(crate) fn recount(
     notices: &mut Notices,
     count: u32,
 ) {
-    let document = project.document();
-    let found = selection.0.iter().find_map(|&id| {
-        let object = document.object(id)?;
-        Some((id, object, free::row(object)?))
-    });
-    let Some((id, object, (row, recipe))) = found else {
+    let found = free::selected_row(project.document(), selection);
+    let Some((id, object, row, recipe)) = found else {
         notices.info("Select a row of clones first.");
         return;
     };

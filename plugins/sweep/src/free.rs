@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use midair_document::{Edit, Group, GroupId, Kind, Object, ObjectId};
+use midair_document::{Document, Edit, Group, GroupId, Kind, Object, ObjectId};
 use midair_field::{Node, Place, Placement, Recipe, Row};
 use midair_studio::{
     notice::Notices,
@@ -19,6 +19,18 @@ pub(crate) fn row(object: &Object) -> Option<(&Row, &Recipe)> {
         Node::Clones { row, recipe } => Some((row, recipe)),
         _ => None,
     }
+}
+
+/// The first row of clones among what is selected, with its object.
+pub(crate) fn selected_row<'a>(
+    document: &'a Document,
+    selection: &Selection,
+) -> Option<(ObjectId, &'a Object, &'a Row, &'a Recipe)> {
+    selection.0.iter().find_map(|&id| {
+        let object = document.object(id)?;
+        let (row, recipe) = row(object)?;
+        Some((id, object, row, recipe))
+    })
 }
 
 /// Whether it came of a sweep.
@@ -55,11 +67,7 @@ pub(crate) fn free(project: &mut Project, selection: &Selection, notices: &mut N
 /// The selected row becomes its clones: as many objects, in a group, each standing where it stood.
 pub(crate) fn apart(project: &mut Project, selection: &mut Selection, notices: &mut Notices) {
     let document = project.document();
-    let found = selection.0.iter().find_map(|&id| {
-        let object = document.object(id)?;
-        Some((id, object, row(object)?))
-    });
-    let Some((id, object, (row, recipe))) = found else {
+    let Some((id, object, row, recipe)) = selected_row(document, selection) else {
         notices.info("Select a row of clones first.");
         return;
     };

@@ -103,12 +103,9 @@ impl SweepPanel {
         let draft = world.resource::<Draft>();
         let selection = world.resource::<Selection>();
         let found = target(project, selection);
-        let clones = selection.0.iter().find_map(|&id| {
-            let object = project.document().object(id)?;
-            let (row, _) = free::row(object)?;
-            Some((object, row.len(), row.count))
-        });
-        if let (None, Some((object, count, each))) = (found, clones) {
+        let clones = free::selected_row(project.document(), selection);
+        if let (None, Some((_, object, row, _))) = (found, clones) {
+            let (count, each) = (row.len(), row.count);
             ui.label(kit::strong(&object.name));
             ui.weak(format!("{count} clones"));
             let mut next = each;

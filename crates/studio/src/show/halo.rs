@@ -31,7 +31,7 @@ pub(super) struct Halo;
 #[derive(Resource, Default)]
 pub(super) struct HaloLook(Option<Handle<StandardMaterial>>);
 
-/// So many are made in a frame: a drawing that is opened costs none.
+/// So many are made in a frame, so that those of a drawing that is opened come over the next ones.
 const A_FRAME: usize = 12;
 
 /// Each stroke that was drawn anew has one anew.

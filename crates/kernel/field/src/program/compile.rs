@@ -8,6 +8,7 @@ use midair_swept::Sweep;
 use rustc_hash::FxHashMap;
 
 use super::{CompileError, Instr, MeshSource, Outline, Program, local_step};
+use crate::bake::Volume;
 use crate::canvas::{Bench, Canvas, Painting};
 use crate::leaf::{Leaf, Source};
 use crate::recipe::{restricted, transformed};
@@ -194,10 +195,7 @@ impl<'a> Compiler<'a> {
         let wanted = local_step(self.step, largest);
         let volume = self.meshes.volume(mesh, wanted);
         let volume = volume.ok_or(CompileError::MissingMesh(*mesh))?;
-        let bounds = transformed(&volume.bounds(), &to_world);
-        // The volume found may be coarser than the one found later.
-        let name = (recipe.hash().0, Vec3::splat(volume.step()));
-        self.leaf(Source::Volume(volume), to_world, bounds, name)
+        self.volume(recipe, volume, to_world)
     }
 
     fn sweep(
@@ -222,7 +220,17 @@ impl<'a> Compiler<'a> {
             Some(volume) => volume,
             None => return Err(make().err().map_or(CompileError::TooLarge, Into::into)),
         };
+        self.volume(recipe, volume, to_world)
+    }
+
+    fn volume(
+        &mut self,
+        recipe: &Recipe,
+        volume: Arc<Volume>,
+        to_world: Affine3A,
+    ) -> Result<Outline, CompileError> {
         let bounds = transformed(&volume.bounds(), &to_world);
+        // The volume found may be coarser than the one found later.
         let name = (recipe.hash().0, Vec3::splat(volume.step()));
         self.leaf(Source::Volume(volume), to_world, bounds, name)
     }
